@@ -61,20 +61,35 @@ static float climbing_n(const situation_t *now, float climb_mps)
     return vehicle.damping_per_s * climb_mps / vehicle.authority_mps2_per_n;
 }
 
+/* The same, for a speed that is to become another one: as the law would. */
+static float braking_n(const situation_t *now, float speed_mps, float wanted_mps)
+{
+    const float more_mps2 = now->parameters->value[PARAMETER_VELK] * (wanted_mps - speed_mps);
+
+    return climbing_n(now, speed_mps) +
+           more_mps2 / est_law_vehicle(now->est, now->parameters).authority_mps2_per_n;
+}
+
 /* More than the hover thrust, of a climb at UNCONFIRMED_MPS. A faster one that the heights do not show is
- * braked to it as the law would, no harder than a slow descent needs. Thrust and accelerometer tell its
- * speed; where they differ, the less of both. */
-static float slow_n(const situation_t *now)
+ * braked to it, no harder than a slow descent needs. Thrust and accelerometer tell its speed; where they
+ * differ, the less of both. */
+static float slow_climb_n(const situation_t *now)
 {
     const evidence_t *evidence = now->evidence;
     const float climb_mps = at_least(fminf(evidence->push_mps, felt_mps(evidence)), UNCONFIRMED_MPS);
-    const float more_mps2 = now->parameters->value[PARAMETER_VELK] * (UNCONFIRMED_MPS - climb_mps);
-    const float authority_mps2_per_n = est_law_vehicle(now->est, now->parameters).authority_mps2_per_n;
-    const float braking_n = at_least(climbing_n(now, climb_mps) + more_mps2 / authority_mps2_per_n,
-                                     -NEAR_HOVER_N);
+    const float braked_n = at_least(braking_n(now, climb_mps, UNCONFIRMED_MPS), -NEAR_HOVER_N);
     const float slow_n = climbing_n(now, UNCONFIRMED_MPS);
 
-    return (evidence->rise_mps < 0.5F * UNCONFIRMED_MPS) ? at_most(braking_n, slow_n) : slow_n;
+    return (evidence->rise_mps < 0.5F * UNCONFIRMED_MPS) ? at_most(braked_n, slow_n) : slow_n;
+}
+
+/* The same of a descent. Where the heights stand still, what the law knows of the speed is theirs: a vehicle
+ * of little drag fell at 1 m/s. So here the speed is that of the worlds in which all mirrors lie. */
+static float slow_descent_n(const situation_t *now)
+{
+    const float sinks_mps = at_most(now->evidence->speed_mps, -UNCONFIRMED_MPS);
+
+    return at_most(braking_n(now, sinks_mps, -UNCONFIRMED_MPS), NEAR_HOVER_N);
 }
 
 /* By the thrust. By the accelerometer too, while its heights show the vehicle on the ground yet: too small a
@@ -96,7 +111,7 @@ static interval_t of_climb(bounds_t *bounds, const situation_t *now)
 {
     (void)bounds;
     return (now->evidence->unshown.climb && climbs_fast(now) && modes_hold_reference(now->mode, now->law))
-               ? most(now->where->hover.thrust_n + slow_n(now))
+               ? most(now->where->hover.thrust_n + slow_climb_n(now))
                : anything;
 }
 
@@ -116,13 +131,16 @@ static bool sinks_blindly(bounds_t *bounds, const situation_t *now)
 }
 
 /* Limits a descent as of_climb() a climb: after a far step of the terrain that no descent has confirmed, and
- * while it sinks blindly. */
+ * while it sinks blindly. What is lowered because it is too high is only braked: its hover thrust may be
+ * one that climbs. */
 static interval_t of_descent(bounds_t *bounds, const situation_t *now)
 {
     const bool slow = sinks_blindly(bounds, now) || now->evidence->unshown.descent;
+    const bool lowered = now->where->supervisor.state == FLIGHT_LOWERING &&
+                         now->evidence->speed_mps < -UNCONFIRMED_MPS;
 
-    return (slow && modes_hold_reference(now->mode, now->law))
-               ? least(now->where->hover.thrust_n - climbing_n(now, UNCONFIRMED_MPS))
+    return (slow && (lowered || modes_hold_reference(now->mode, now->law)))
+               ? least(now->where->hover.thrust_n + slow_descent_n(now))
                : anything;
 }
 

@@ -20,11 +20,14 @@
 #define STEP_NEAR_MM 10.0F    /* fitted, docs/control.md */
 #define STEP_FAR_SHARE 0.002F /* of the steps: as far as the scanner sees */
 #define STEP_FAR_PER_MM (1.0F / 8000.0F) /* 4 m up or down */
-/* What a sound accelerometer tells beyond the thrust, or of a vehicle that stands: a Student t of three
- * degrees of freedom, whose percentiles make noise prints beside those of healthy flights. A Gaussian has no
- * such tail. While the thrust changes, it tells more beyond the model's. A lying one tells anything within
- * its range. */
+/* What a sound accelerometer tells beyond the thrust: a Student t of three degrees of freedom, whose
+ * percentiles make noise prints beside those of healthy flights. A Gaussian has no such tail. While the
+ * thrust changes, it tells more beyond the model's. A lying one tells anything within its range. */
 #define STRANGE_MPS2 0.5F /* fitted: its scale */
+/* The same of a vehicle that stands: no model of a thrust is wrong there. With the scale of flight, one that
+ * fell at 2 m/s2 seemed to stand as well as to fly. The peak is that of flight, because calm scans come in a
+ * row, and are no evidence for the ground each. So the density integrates to 0.6. */
+#define REST_MPS2 0.3F /* fitted: its scale, on the ground */
 
 /* Of a step under one mirror, times the share of the scans that have one. */
 static inline float density_of_step(float step_mm)

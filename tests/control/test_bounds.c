@@ -183,6 +183,35 @@ void test_a_descent_has_one_for_a_second_while_all_mirrors_may_lie_and_it_sinks(
     NEAR(3.0F, bounded_n(3.0F));
 }
 
+/* Heights that stand still hide how fast it sinks. */
+void test_a_descent_that_the_heights_do_not_show_is_braked_by_the_speed_without_them(void)
+{
+    evidence.unshown.descent = true;
+    evidence.speed_mps = -0.3F;
+    NEAR(7.0F - 0.3F * 2.5F * 7.0F / 9.80665F, bounded_n(3.0F));
+    evidence.speed_mps = -0.33F;
+    NEAR(7.0F + (2.5F * -0.33F + 8.0F * 0.03F) * 7.0F / 9.80665F, bounded_n(3.0F));
+    NEAR(8.0F, bounded_n(8.0F));
+    evidence.speed_mps = -1.0F;
+    NEAR(7.5F, bounded_n(3.0F)); /* no harder than a slow climb */
+    evidence.unshown.descent = false;
+    NEAR(3.0F, bounded_n(3.0F));
+}
+
+/* LOWERING ends a climb that the hover thrust may have made: a bound by that thrust would keep it up. */
+void test_what_is_lowered_is_braked_but_never_kept_from_sinking(void)
+{
+    in_state(FLIGHT_LOWERING);
+    mode_is(FLIGHT_MODE_EST_LAND);
+    evidence.unshown.descent = true;
+    evidence.speed_mps = -0.3F;
+    NEAR(3.0F, bounded_n(3.0F));
+    evidence.speed_mps = -0.33F;
+    NEAR(7.0F + (2.5F * -0.33F + 8.0F * 0.03F) * 7.0F / 9.80665F, bounded_n(3.0F));
+    in_state(FLIGHT_LANDING);
+    NEAR(3.0F, bounded_n(3.0F));
+}
+
 void test_a_thrust_in_doubt_stays_near_the_held_one_on_one_side(void)
 {
     evidence.doubts = DOUBT_THRUST;

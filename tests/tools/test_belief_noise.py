@@ -41,7 +41,7 @@ class Noise(unittest.TestCase):
         healthy = situations.load(situations.HEALTHY)
         planned = survey.planned(healthy, ["EST-THREE"], SEED, 1, False, ["draughts", "edges", "slopes", "stairs", "vehicle"])
         mirrors, values = noise.mirrors_of(PROGRAM), noise.values_of(PROGRAM)
-        flights = [noise.fly(PROGRAM, flight, i % 2 == 1, mirrors, values) for i, flight in enumerate(planned)]
+        flights, on_ground = zip(*[noise.fly(PROGRAM, flight, i % 2 == 1, mirrors, values) for i, flight in enumerate(planned)], strict=True)
         self.assertGreater(sum(map(len, flights)), 2000)
         _, innovation = self.belief.likelihood(self.belief.start, flights)
         print(f"normalised innovation {innovation:.2f} of {len(flights)} flights, seed {SEED}")
@@ -55,6 +55,14 @@ class Noise(unittest.TestCase):
                 print(f"the accelerometer beyond the thrust, {title}, {percent} %: {found:.2f} scales, {expected:.2f} expected")
                 self.assertGreater(found, 0.5 * expected)
                 self.assertLess(found, 1.5 * expected)
+
+        rest = numpy.abs(numpy.concatenate(on_ground)) / self.belief.start[noise.NAMES.index("REST_MPS2")]
+        self.assertGreater(len(rest), 100)
+        for percent in (50, 90):    # its tail is thinner than that of flight: a Gaussian's
+            found, expected = numpy.percentile(rest, percent), stats.t.ppf(0.5 + percent / 200, 3)
+            print(f"the accelerometer on the ground, {percent} %: {found:.2f} scales, {expected:.2f} expected")
+            self.assertGreater(found, 0.5 * expected)
+            self.assertLess(found, 1.5 * expected)
 
     def test_what_is_expected_of_an_innovation_is_that_of_noise_and_small_steps_together(self):
         self.assertAlmostEqual(noise.expected_square([6.0, 0.0, *self.belief.start[2:]]), 1.0, delta=0.01)

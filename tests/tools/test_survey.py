@@ -259,6 +259,15 @@ class Saying(unittest.TestCase):
         with self.assertRaises(situations.Wrong):
             survey.planned(TABLES["healthy"], ["EST"], 1, 10, False, ["drafts"])
 
+    def test_no_flight_of_any_draw_is_longer_than_the_program_takes(self):
+        source = (ROOT / "tools/plomada/scenario_file.c").read_text(encoding="utf-8")
+        limit_s = float(re.search(r"DURATION_MAX_S (\S+)", source)[1])
+        for table in TABLES.values():
+            flights = survey.planned(table, ["EST"], 30401, 200, False, table.rows())
+            times_s = [float(word) for one in flights for word in re.findall(r"^(?:land|end) (\S+)", one.flight.text, re.M)]
+            self.assertGreater(len(times_s), 1000)
+            self.assertLess(max(times_s), limit_s)
+
     def test_the_tables_count_by_row_and_name_the_worst(self):
         good, bad = survey.find("table-slow/1/EST"), survey.find("table-fast/2/EST")
         of_other = survey.find("table-fast/1/PD")

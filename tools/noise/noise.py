@@ -32,12 +32,13 @@ import survey  # noqa: E402
 OWN_NOISE = ("--set", "plant.mirror_noise=3", "--set", "plant.common_noise=0")
 FITTED = {"BELIEF_NOISE_MM": (1, 15), "STEP_SHARE": (1e-3, 0.3), "STEP_MM": (50, 1000), "STEP_NEAR_SHARE": (0, 0.95),
           "STEP_NEAR_MM": (3, 80), "STEP_FAR_SHARE": (1e-4, 0.04), "MOTION_CHANGES": (0.005, 0.9), "SHARED_GAIN": (0.05, 1),
-          "BELIEF_RATE_GAIN": (0.02, 1.5), "OWN_GAIN": (0.01, 1), "STRANGE_MPS2": (0.1, 5), "UNDELIVERED_SHARE": (0.01, 2)}
+          "BELIEF_RATE_GAIN": (0.02, 1.5), "OWN_GAIN": (0.01, 1), "STRANGE_MPS2": (0.1, 5), "UNDELIVERED_SHARE": (0.01, 2), "REST_MPS2": (0.1, 5)}
 MOTIONS = {"stands, share": (0.01, 0.8), "calm, share": (0.01, 0.8), "pushed, share": (0.01, 0.8), "calm, mm": (0.5, 6),
            "pushed, mm": (6, 300), "flies, mm": (2, 40)}
 NAMES = list(FITTED)
 DRAWN = 100_000
 ON_GROUND_M = 0.01    # the ground carries it, whatever the thrust says
+STANDS_M, STANDS_S = 0.001, 0.5     # it has stood there for several scans
 SHARES = (50, 68, 95, 99)
 FAR_MM = 4000.0     # STEP_FAR_PER_MM's
 HARNESS = r"""
@@ -230,10 +231,10 @@ def bias_mps2(rows):
 
 
 def scans_of(path, mirrors, values):
-    """The scans of a flight's CSV, as noise_of() takes them. From the take-off on: at rest nothing moves."""
+    """The scans of a flight's CSV, as noise_of() takes them, from the take-off on; and what the accelerometer tells on the ground, a scan each."""
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    scans, scan_s, frame_s, row_s, flown = [], None, None, 0.0, False
+    scans, rest_mps2, scan_s, frame_s, row_s, flown, grounded_s = [], [], None, None, 0.0, False, 0.0
     thrust, felt, pushed, undelivered, dragged, bias = Thrust(rows, values), Motion(), Motion(), Motion(), Motion(), bias_mps2(rows)
     for row in rows:
         now_s = float(row["t_s"])
@@ -241,6 +242,7 @@ def scans_of(path, mirrors, values):
         pushed.gained += by_thrust
         undelivered.gained += to_come
         dragged.gained += by_drag
+        grounded_s = grounded_s + now_s - row_s if float(row["height_m"]) < STANDS_M else 0.0
         row_s = now_s
         if row["up_mps2"]:
             felt.gained += (float(row["up_mps2"]) - bias) * (now_s - frame_s if frame_s is not None else 0.0)
@@ -258,7 +260,9 @@ def scans_of(path, mirrors, values):
                      if slant else [0.0, 0.0, 0.0])
         if flown:
             scans.append(scan)
-    return numpy.ascontiguousarray(scans, dtype=numpy.float32).reshape(-1, 14)
+        if grounded_s > STANDS_S and gap_s < STANDS_S:
+            rest_mps2.append(scan[1] / gap_s)
+    return numpy.ascontiguousarray(scans, dtype=numpy.float32).reshape(-1, 14), rest_mps2
 
 
 def fly(program, planned, own, mirrors, values):
@@ -307,7 +311,8 @@ def main():
     planned = survey.planned(healthy, ["EST-THREE"], options.seed, options.flights, False, rows)
     mirrors, values = mirrors_of(options.program), values_of(options.program)
     with ThreadPoolExecutor() as pool:
-        flown = list(pool.map(lambda job: fly(options.program, job[1], job[0] % 2 == 1, mirrors, values), enumerate(planned)))
+        told = list(pool.map(lambda job: fly(options.program, job[1], job[0] % 2 == 1, mirrors, values), enumerate(planned)))
+    flown = [scans for scans, _ in told]
     belief = Belief()
     for row in rows:
         of_row = [scans for one, scans in zip(planned, flown, strict=True) if one.situation.row == row and len(scans)]
@@ -324,6 +329,8 @@ def main():
         of_scale = strange[(strange[:, 1] >= low) & (strange[:, 1] < high)]
         if len(of_scale):
             print(f"  scale {low:.1f} to {high:.1f} m/s2, {len(of_scale):6} scans: {percentiles(numpy.sort(numpy.abs(of_scale[:, 0])))} m/s2")
+    rest = numpy.sort(numpy.abs(numpy.concatenate([rest_mps2 for _, rest_mps2 in told]))) / belief.start[NAMES.index("REST_MPS2")]
+    print(f"the accelerometer on the ground, {len(rest)} scans, over its scale: {percentiles(rest)}")
     if options.fit:
         found = fit(belief, flights)
         likelihood, innovation = belief.likelihood(found, flights)
