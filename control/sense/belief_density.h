@@ -24,9 +24,10 @@
  * percentiles make noise prints beside those of healthy flights. A Gaussian has no such tail. While the
  * thrust changes, it tells more beyond the model's. A lying one tells anything within its range. */
 #define STRANGE_MPS2 0.5F /* fitted: its scale */
-/* The same of a vehicle that stands: no model of a thrust is wrong there. With the scale of flight, one that
- * fell at 2 m/s2 seemed to stand as well as to fly. The peak is that of flight, because calm scans come in a
- * row, and are no evidence for the ground each. So the density integrates to 0.6. */
+/* The same of a vehicle that stands, where no mirror tells whether it does: no model of a thrust is wrong
+ * there. With the scale of flight, one that fell at 2 m/s2 seemed to stand as well as to fly. The peak is
+ * that of flight, because calm scans come in a row, and are no evidence for the ground each. So the density
+ * integrates to 0.6. Where the heights tell that it stands, motors that shake the IMU must not refute it. */
 #define REST_MPS2 0.3F /* fitted: its scale, on the ground */
 
 /* Of a step under one mirror, times the share of the scans that have one. */

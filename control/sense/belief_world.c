@@ -207,7 +207,8 @@ static void stand(const belief_world_t *world, ways_t *ways, const belief_scan_t
 {
     const float gained_mps2 = scan->felt.untold ? 0.0F : scan->felt.gained_mps / scan->gap_s;
     const float lift_mps2 = scan->felt.pushed_mps / scan->gap_s;
-    const float still = density_of_strange(gained_mps2, REST_MPS2) / density_of_strange(0.0F, REST_MPS2);
+    const float scale_mps2 = (ways->honest == 0U) ? REST_MPS2 : STRANGE_MPS2;
+    const float still = density_of_strange(gained_mps2, scale_mps2) / density_of_strange(0.0F, scale_mps2);
     const float carried = still * density_of_strange(at_least(lift_mps2, 0.0F), STRANGE_MPS2);
 
     ways->aloft = ways->honest != 0U && height_of(world, ways->honest) > LOW_MM && !scan->felt.untold;

@@ -15,7 +15,7 @@
 #define WORDS_MAX \
     14 /* place lift X Y LENGTH WIDTH TRAVEL SPEED START STAY turned DEG, and two to be told of */
 #define PLACE_N 16384
-#define DURATION_MAX_S 7200.0 /* twice the longest flight of tools/campaign/healthy.toml */
+#define DURATION_MAX_S 7200.0          /* twice the longest flight of tools/campaign/healthy.toml */
 #define BYTE_ORDER_MARK "\xEF\xBB\xBF" /* some editors begin a text with it */
 
 static struct {

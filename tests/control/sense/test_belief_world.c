@@ -129,6 +129,31 @@ void test_no_vehicle_stands_in_the_air_whose_thrust_is_too_small(void)
     }
 }
 
+/* Half a second of a fall by 2 m/s2, of which the thrust tells the half; liars: of the one mirror that tells
+ * something. Returns how probably it stands. */
+static float stands_after_a_fall(uint16_t liars)
+{
+    setUp();
+    scan.told = 1U << MIRROR_FRONT;
+    scan.felt = (belief_felt_t){.gained_mps = -2.0F * GAP_S, .pushed_mps = -1.0F * GAP_S, .dragged = 0.24F};
+    for (int k = 0; k < 5; k++) {
+        belief_world_look(&scan, slant, height);
+        (void)belief_world_scan(&world, &scan, liars);
+    }
+    return world.motions[BELIEF_STANDS];
+}
+
+void test_what_falls_where_no_mirror_tells_it_does_not_stand(void)
+{
+    TEST_ASSERT_TRUE(stands_after_a_fall(1U << MIRROR_FRONT) < 0.02F);
+}
+
+/* Motors shake an IMU by as much. */
+void test_where_the_heights_stand_still_an_accelerometer_alone_refutes_it_hardly(void)
+{
+    TEST_ASSERT_TRUE(stands_after_a_fall(0U) > 0.2F);
+}
+
 #define CALM 1U /* a kind of motion: it flies in calm air */
 
 /* How much more probably the thrust has no effect where it is so much too small than where it is as much too
