@@ -84,12 +84,19 @@ static float slow_climb_n(const situation_t *now)
 }
 
 /* The same of a descent. Where the heights stand still, what the law knows of the speed is theirs: a vehicle
- * of little drag fell at 1 m/s. So here the speed is that of the worlds in which all mirrors lie. */
+ * of little drag fell at 1 m/s. So then the speed is that of the worlds in which all mirrors lie. */
+static bool falls_unshown(const evidence_t *evidence)
+{
+    return evidence->speed_mps < -UNCONFIRMED_MPS && fabsf(evidence->rise_mps) < 0.5F * UNCONFIRMED_MPS;
+}
+
 static float slow_descent_n(const situation_t *now)
 {
-    const float sinks_mps = at_most(now->evidence->speed_mps, -UNCONFIRMED_MPS);
+    const evidence_t *evidence = now->evidence;
 
-    return at_most(braking_n(now, sinks_mps, -UNCONFIRMED_MPS), NEAR_HOVER_N);
+    return falls_unshown(evidence)
+               ? at_most(braking_n(now, evidence->speed_mps, -UNCONFIRMED_MPS), NEAR_HOVER_N)
+               : climbing_n(now, -UNCONFIRMED_MPS);
 }
 
 /* By the thrust. By the accelerometer too, while its heights show the vehicle on the ground yet: too small a
@@ -130,14 +137,13 @@ static bool sinks_blindly(bounds_t *bounds, const situation_t *now)
     return blindly && bounds->blindly_s < BLINDLY_S;
 }
 
-/* Limits a descent as of_climb() a climb: after a far step of the terrain that no descent has confirmed, and
- * while it sinks blindly. What is lowered because it is too high is only braked: its hover thrust may be
- * one that climbs. */
+/* Limits a descent as of_climb() a climb: after a far step of the terrain that nothing has confirmed, and
+ * while it sinks blindly. What is lowered because it is too high is only braked: its hover thrust may be one
+ * that climbs. */
 static interval_t of_descent(bounds_t *bounds, const situation_t *now)
 {
     const bool slow = sinks_blindly(bounds, now) || now->evidence->unshown.descent;
-    const bool lowered = now->where->supervisor.state == FLIGHT_LOWERING &&
-                         now->evidence->speed_mps < -UNCONFIRMED_MPS;
+    const bool lowered = now->where->supervisor.state == FLIGHT_LOWERING && falls_unshown(now->evidence);
 
     return (slow && (lowered || modes_hold_reference(now->mode, now->law)))
                ? least(now->where->hover.thrust_n + slow_descent_n(now))

@@ -393,8 +393,9 @@ static float speed_setpoint_mps(est_law_t *law, const parameters_t *parameters, 
     if (mode != EST_MODE_HOLD) {
         return let_down_mps(mode, state->height_m);
     }
-    const float setpoint_m = terrain_keep_setpoint_m(&law->terrain, reference_m,
-                                                     law->estimator.terrain_height_m, how, law->step_s);
+    const terrain_keep_ground_t ground = {
+        .height_m = law->estimator.terrain_height_m, .rate_mps = law->estimator.now.terrain_mps, .how = how};
+    const float setpoint_m = terrain_keep_setpoint_m(&law->terrain, reference_m, &ground, law->step_s);
     law->terrain.ignored_m = reference_m - setpoint_m;
     if (fabsf(setpoint_m - state->height_m) < CONTENT_M) {
         law->terrain.arrived_m = reference_m;

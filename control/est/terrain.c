@@ -50,14 +50,13 @@ bool terrain_sees_ground(const terrain_sight_t *sight, bool begun)
     return shown > 1U;
 }
 
-void terrain_begin(terrain_t *terrain, const filter_t *filter, float altitude_m)
+void terrain_begin(terrain_t *terrain, const filter_t *filter, float altitude_m, float ground_m)
 {
     terrain_hypothesis_t *const first = &terrain->kept[0];
 
     if (terrain->count != 0U) {
         return;
     }
-    terrain->known = 0U;
     terrain->count = 1U;
     for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
         terrain_hypothesis_reset_variance(first, i, 0.0F);
@@ -70,6 +69,12 @@ void terrain_begin(terrain_t *terrain, const filter_t *filter, float altitude_m)
     first->x[TERRAIN_BIAS] = filter->estimate.bias_mps2;
     for (uint16_t i = 0U; i <= (uint16_t)TERRAIN_BIAS; ++i) {
         first->p[i][i] = filter->covariance[i][i];
+    }
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        const uint16_t ground = terrain_ground_of(m);
+
+        first->x[ground] = ground_m;
+        first->p[ground][ground] = TERRAIN_OWN_M * TERRAIN_OWN_M;
     }
 }
 
@@ -221,7 +226,7 @@ static uint16_t step(terrain_t *t, const terrain_heights_t *heights, uint16_t to
 static uint16_t branch(terrain_t *t, const terrain_hypothesis_t *from, const terrain_heights_t *heights,
                        float gap_s, uint16_t count)
 {
-    const uint16_t told = heights->valid & t->known;
+    const uint16_t told = heights->valid;
 
     for (uint16_t rising = 0U; rising <= told; ++rising) {
         const bool is_way = (rising & (uint16_t)~told) == 0U;
@@ -237,8 +242,8 @@ static uint16_t branch(terrain_t *t, const terrain_hypothesis_t *from, const ter
     return count;
 }
 
-/* Before a scan: the common noise, the drift of a ramp's rate, and grounds that are met. */
-static void expect(terrain_hypothesis_t *h, const terrain_heights_t *heights, uint16_t met, float gap_s)
+/* Before a scan: the common noise, and the drift of a ramp's rate. */
+static void expect(terrain_hypothesis_t *h, float gap_s)
 {
     h->p[TERRAIN_ALTITUDE][TERRAIN_ALTITUDE] += TERRAIN_COMMON_M * TERRAIN_COMMON_M;
     if (h->ramps == 0U) {
@@ -246,11 +251,6 @@ static void expect(terrain_hypothesis_t *h, const terrain_heights_t *heights, ui
         terrain_hypothesis_reset_variance(h, TERRAIN_RATE, RAMP_MPS * RAMP_MPS);
     }
     h->p[TERRAIN_RATE][TERRAIN_RATE] += RAMP_DRIFT_MPS2_2 * gap_s;
-    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        if (has(met, m)) {
-            terrain_hypothesis_meet(h, m, heights->height_m[m]);
-        }
-    }
 }
 
 /* The next ones become those that are kept, where any way is possible. The most probable is the first: it
@@ -287,18 +287,16 @@ static float middle_m(const terrain_hypothesis_t *h, uint16_t set)
 
 terrain_shown_t terrain_scan(terrain_t *t, const terrain_heights_t *heights, float gap_s)
 {
-    const uint16_t met = heights->valid & (uint16_t)~t->known;
     uint16_t count = 0U;
 
     t->best = 0.0F;
     for (uint16_t i = 0U; i < t->count; ++i) {
-        expect(&t->kept[i], heights, met, gap_s);
+        expect(&t->kept[i], gap_s);
     }
     for (uint16_t i = 0U; i < t->count; ++i) {
         count = branch(t, &t->kept[i], heights, gap_s, count);
     }
     take_over(t, count);
-    t->known |= met;
     t->way = t->kept[0];
     for (uint16_t i = 1U; i < t->count; ++i) {
         terrain_hypothesis_merge(&t->way, &t->kept[i]);

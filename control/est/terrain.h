@@ -69,7 +69,6 @@ typedef struct {
 #define TERRAIN_KEPT 6U /* tried 2, 4 and 8 */
 
 typedef struct {
-    uint16_t known; /* bits: mirrors whose ground is known */
     uint16_t count; /* of the hypotheses that are kept; 0: to be begun */
     terrain_hypothesis_t kept[TERRAIN_KEPT];
     terrain_hypothesis_t next[TERRAIN_KEPT], risen, way; /* of one scan: too large for a stack */
@@ -83,8 +82,10 @@ typedef struct {
     float ground_m; /* under the middle mirror: the altitude less this is the height */
 } terrain_shown_t;
 
-/* Begins with what a filter knows, where no hypothesis is kept. altitude_m: above the ground of the start. */
-void terrain_begin(terrain_t *terrain, const filter_t *filter, float altitude_m);
+/* Begins with what a filter knows, where no hypothesis is kept. altitude_m: above the ground of the start.
+ * ground_m: that of all mirrors, as the filter thinks; the first heights then correct the altitude, and not
+ * the ground. */
+void terrain_begin(terrain_t *terrain, const filter_t *filter, float altitude_m, float ground_m);
 
 /* Moves those that are kept over dt_s; bias_mps2: drift of the bias, per root second. */
 void terrain_predict(terrain_t *terrain, const motion_t *motion, float dt_s, float bias_mps2);

@@ -20,12 +20,19 @@ void terrain_keep_start(terrain_keep_t *keep, float terrain_m);
 
 typedef enum {
     TERRAIN_KEEP_NOT,   /* the height above the present terrain counts, as with a new reference */
-    TERRAIN_KEEP_STEPS, /* terrain_m is a sum of steps and rates: it drifts */
-    TERRAIN_KEEP_GROUND /* terrain_m is a state (terrain.h): it drifts on ramps only */
+    TERRAIN_KEEP_STEPS, /* height_m is a sum of steps and rates: it drifts */
+    TERRAIN_KEEP_GROUND /* height_m is a state (terrain.h): it drifts on ramps only */
 } terrain_keep_how_t;
 
+/* The terrain now. */
+typedef struct {
+    float height_m; /* summed since the start */
+    float rate_mps; /* part of that which grows with time; until the reference is reached it does not count */
+    terrain_keep_how_t how;
+} terrain_keep_ground_t;
+
 /* Height to hold above the present terrain. */
-float terrain_keep_setpoint_m(terrain_keep_t *keep, float reference_m, float terrain_m,
-                              terrain_keep_how_t how, float step_s);
+float terrain_keep_setpoint_m(terrain_keep_t *keep, float reference_m, const terrain_keep_ground_t *ground,
+                              float step_s);
 
 #endif

@@ -1,7 +1,10 @@
 /* A take-off is unconfirmed until a climb shows in the heights, as is a step of the terrain towards the
  * vehicle. A jump is no first climb. After a far fall of the terrain the heights have to show that the
- * vehicle follows it. */
+ * vehicle moves: a blocked beam's do not. A climb shows it too: by an accelerometer that lies the bound
+ * DESCENT lifts the vehicle, and would never end. */
 #include "control/sense/confirmation.h"
+
+#include <math.h>
 
 #include "control/between.h"
 #include "control/credible.h"
@@ -18,7 +21,7 @@ static void watch_depth(confirmation_t *confirmation, const height_change_t *cha
     if (change->step) {
         confirmation->terrain_fell = change->rise_m > TERRAIN_FALL_M;
         confirmation->after_fall_m = change->height_m;
-    } else if (standing || change->height_m < confirmation->after_fall_m - CONFIRMED_M) {
+    } else if (standing || fabsf(change->height_m - confirmation->after_fall_m) > CONFIRMED_M) {
         confirmation->terrain_fell = false;
     }
 }

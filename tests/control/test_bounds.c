@@ -193,7 +193,11 @@ void test_a_descent_that_the_heights_do_not_show_is_braked_by_the_speed_without_
     NEAR(7.0F + (2.5F * -0.33F + 8.0F * 0.03F) * 7.0F / 9.80665F, bounded_n(3.0F));
     NEAR(8.0F, bounded_n(8.0F));
     evidence.speed_mps = -1.0F;
-    NEAR(7.5F, bounded_n(3.0F)); /* no harder than a slow climb */
+    NEAR(7.5F, bounded_n(3.0F));                                          /* no harder than a slow climb */
+    for (float rise_mps = -0.151F; rise_mps < 0.2F; rise_mps += 0.302F) { /* heights that move show it */
+        evidence.rise_mps = rise_mps;
+        NEAR(7.0F - 0.3F * 2.5F * 7.0F / 9.80665F, bounded_n(3.0F));
+    }
     evidence.unshown.descent = false;
     NEAR(3.0F, bounded_n(3.0F));
 }
@@ -208,6 +212,9 @@ void test_what_is_lowered_is_braked_but_never_kept_from_sinking(void)
     NEAR(3.0F, bounded_n(3.0F));
     evidence.speed_mps = -0.33F;
     NEAR(7.0F + (2.5F * -0.33F + 8.0F * 0.03F) * 7.0F / 9.80665F, bounded_n(3.0F));
+    evidence.rise_mps = 0.151F; /* an accelerometer that lies: it climbs by this bound */
+    NEAR(3.0F, bounded_n(3.0F));
+    evidence.rise_mps = 0.0F;
     in_state(FLIGHT_LANDING);
     NEAR(3.0F, bounded_n(3.0F));
 }

@@ -16,8 +16,10 @@ void tearDown(void) {}
 
 static float setpoint_m(float reference_m, float terrain_m, bool follows)
 {
-    return terrain_keep_setpoint_m(&keep, reference_m, terrain_m,
-                                   follows ? TERRAIN_KEEP_NOT : TERRAIN_KEEP_STEPS, 0.1F);
+    const terrain_keep_ground_t ground = {.height_m = terrain_m,
+                                          .how = follows ? TERRAIN_KEEP_NOT : TERRAIN_KEEP_STEPS};
+
+    return terrain_keep_setpoint_m(&keep, reference_m, &ground, 0.1F);
 }
 
 void test_ignored_terrain_moves_the_setpoint_by_its_height(void)
@@ -32,12 +34,33 @@ void test_ignored_terrain_moves_the_setpoint_by_its_height(void)
 
 void test_ground_that_is_a_state_is_forgotten_ten_times_slower(void)
 {
+    const terrain_keep_ground_t ground = {.height_m = 0.1F, .how = TERRAIN_KEEP_GROUND};
+
     (void)setpoint_m(0.60F, 0.0F, false);
     (void)setpoint_m(0.60F, 0.1F, false);
-    const float before_m = terrain_keep_setpoint_m(&keep, 0.60F, 0.1F, TERRAIN_KEEP_GROUND, 0.0F);
-    (void)terrain_keep_setpoint_m(&keep, 0.60F, 0.1F, TERRAIN_KEEP_GROUND, 1.0F);
-    const float after_m = terrain_keep_setpoint_m(&keep, 0.60F, 0.1F, TERRAIN_KEEP_GROUND, 0.0F);
+    const float before_m = terrain_keep_setpoint_m(&keep, 0.60F, &ground, 0.0F);
+    (void)terrain_keep_setpoint_m(&keep, 0.60F, &ground, 1.0F);
+    const float after_m = terrain_keep_setpoint_m(&keep, 0.60F, &ground, 0.0F);
     NEAR(before_m + (0.60F - before_m) / 300.0F, after_m);
+}
+
+/* Steps count at once, also in a climb. */
+void test_the_rate_of_the_terrain_counts_once_the_reference_was_reached(void)
+{
+    terrain_keep_ground_t ground = {.rate_mps = -0.05F, .how = TERRAIN_KEEP_STEPS};
+    float held_m[2];
+
+    for (int arrived = 0; arrived < 2; arrived++) {
+        setUp();
+        ground.height_m = 0.0F;
+        keep.arrived_m = (arrived != 0) ? 0.60F : 0.0F;
+        for (int k = 0; k < 10; k++) {
+            held_m[arrived] = terrain_keep_setpoint_m(&keep, 0.60F, &ground, 0.1F);
+            ground.height_m -= 0.005F;
+        }
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.006F, 0.60F, held_m[0]); /* a cycle late */
+    TEST_ASSERT_FLOAT_WITHIN(0.002F, 0.645F, held_m[1]);
 }
 
 void test_a_start_forgets_what_the_terrain_has_done(void)
