@@ -44,7 +44,7 @@ static void measure(roughness_t *roughness, float height_m)
 float roughness_variance_m2(const roughness_t *roughness)
 {
     const float noise_m = roughness->noise_m;
-    return FLOOR_VARIANCE * at_least(noise_m * noise_m - HEIGHT_SIGMA_M * HEIGHT_SIGMA_M, 0.0F);
+    return FLOOR_VARIANCE * at_least(noise_m * noise_m - ROUGHNESS_SMOOTH_M * ROUGHNESS_SMOOTH_M, 0.0F);
 }
 
 static void watch_bars(roughness_t *roughness, float innovation_m, uint32_t rays_us)

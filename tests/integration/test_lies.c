@@ -190,7 +190,7 @@ void test_one_blocked_beam_of_three_changes_nothing(void)
 
 static const lie_t floors[] = {
     {{FLAT, "plant.bars_mm=60", "plant.bars_period=0.4"}, 300.0, 0.5, 40.0},
-    {{"plant.platform=0", "plant.bars_mm=60", "plant.bars_period=0.4"}, 300.0, 0.5, 40.0},
+    {{FLAT, "plant.bars_mm=60", "plant.bars_period=0.4", "plant.airframe=1"}, 300.0, 0.5, 40.0},
 };
 
 void test_bars_on_the_floor_are_flown_over(void)

@@ -284,12 +284,11 @@ void test_a_height_of_a_smooth_floor_has_a_noise_of_1_3_mm(void)
     NEAR(0.01F, e.innovation_m);
 }
 
-/* Quiet heights leave 0.8 of the square of a floor's 30 mm; what is beyond the scanner's 6.4 mm counts by
- * half. */
+/* Quiet heights leave 0.8 of the square of a floor's 30 mm; what is beyond 20 mm counts by half. */
 void test_a_height_of_a_rough_floor_has_its_noise_too(void)
 {
     memset(filter->covariance, 0, sizeof filter->covariance);
-    filter->covariance[FILTER_HEIGHT][FILTER_HEIGHT] = 0.5F * (0.8F * 0.0009F - 0.0064F * 0.0064F) + R_M2;
+    filter->covariance[FILTER_HEIGHT][FILTER_HEIGHT] = 0.5F * (0.8F * 0.0009F - 0.0192F * 0.0192F) + R_M2;
     roughness->noise_m = 0.03F;
     roughness->in_a_row = 2U;
     roughness->previous_m[0] = roughness->previous_m[1] = 0.51F;

@@ -56,16 +56,13 @@ void test_runs_of_wrong_heights_are_no_noise_of_the_floor(void)
     }
 }
 
-/* 17 mm: three mirrors over bars of 60 mm. With three sigma, 19.2 mm, in place of one that was a smooth
- * floor.
- */
-void test_what_a_scanner_cannot_make_on_average_is_the_floor_s(void)
+void test_a_floor_is_rough_beyond_three_sigma_of_a_smooth_one(void)
 {
     TEST_ASSERT_EQUAL_FLOAT(0.0F, roughness_variance_m2(&roughness));
-    roughness.noise_m = 0.0063F;
+    roughness.noise_m = 0.0191F;
     TEST_ASSERT_EQUAL_FLOAT(0.0F, roughness_variance_m2(&roughness));
-    roughness.noise_m = 0.017F;
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-9F, 0.5F * (0.017F * 0.017F - 0.0064F * 0.0064F),
+    roughness.noise_m = 0.03F;
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-9F, 0.5F * (0.0009F - 0.0192F * 0.0192F),
                              roughness_variance_m2(&roughness));
 }
 
