@@ -375,7 +375,7 @@ height_outcome_t estimator_fuse_over(estimator_t *e, const terrain_sight_t *sigh
     predict_through(e, rays_us);
     e->rays_us = e->delayed_us;
     const float altitude_m = e->filter.estimate.height_m + e->terrain_height_m;
-    terrain_begin(&e->terrain, &e->filter, altitude_m, e->terrain_height_m);
+    terrain_begin(&e->terrain, &e->filter, &heights, altitude_m, e->terrain_height_m);
     const terrain_shown_t shown = terrain_scan(&e->terrain, &heights, gap_s);
     take_shown(e, &shown);
     e->innovation_m = shown.altitude_m - altitude_m;

@@ -22,6 +22,8 @@
 #define SPEED_MPS 1.0F /* of that speed; the seed's vehicle and a careful pilot fly 0.3 to 0.6 m/s */
 #define SPOTS_M 0.12F  /* between the spots of two mirrors; the default geometry */
 
+#define APART_M (3.0F * 1.41421356F * TERRAIN_OWN_M) /* three sigmas of two heights: another ground */
+
 #define PER_OWN 66.4903801F /* 1 / (sqrt(2 pi) TERRAIN_OWN_M) */
 #define NO_WAY 1.0e-4F      /* of the density of the best way: less than that is not kept */
 
@@ -48,34 +50,6 @@ bool terrain_sees_ground(const terrain_sight_t *sight, bool begun)
         shown = (uint16_t)(shown + is_shown(sight, m, begun ? sight->liars : sight->doubted));
     }
     return shown > 1U;
-}
-
-void terrain_begin(terrain_t *terrain, const filter_t *filter, float altitude_m, float ground_m)
-{
-    terrain_hypothesis_t *const first = &terrain->kept[0];
-
-    if (terrain->count != 0U) {
-        return;
-    }
-    terrain->count = 1U;
-    for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
-        terrain_hypothesis_reset_variance(first, i, 0.0F);
-        first->x[i] = 0.0F;
-    }
-    first->share = 1.0F;
-    first->ramps = 0U;
-    first->x[TERRAIN_ALTITUDE] = altitude_m;
-    first->x[TERRAIN_SPEED] = filter->estimate.speed_mps;
-    first->x[TERRAIN_BIAS] = filter->estimate.bias_mps2;
-    for (uint16_t i = 0U; i <= (uint16_t)TERRAIN_BIAS; ++i) {
-        first->p[i][i] = filter->covariance[i][i];
-    }
-    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        const uint16_t ground = terrain_ground_of(m);
-
-        first->x[ground] = ground_m;
-        first->p[ground][ground] = TERRAIN_OWN_M * TERRAIN_OWN_M;
-    }
 }
 
 void terrain_predict(terrain_t *terrain, const motion_t *motion, float dt_s, float bias_mps2)
@@ -108,17 +82,15 @@ typedef struct {
     float sum_m, low_m, high_m, count;
 } grounds_t;
 
-static grounds_t grounds_of(const terrain_hypothesis_t *h, uint16_t set)
+static grounds_t grounds_of(const float under_m[MIRROR_COUNT], uint16_t set)
 {
     grounds_t grounds = {.low_m = INFINITY, .high_m = -INFINITY};
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         if (has(set, m)) {
-            const float ground_m = h->x[terrain_ground_of(m)];
-
-            grounds.sum_m += ground_m;
-            grounds.low_m = at_most(grounds.low_m, ground_m);
-            grounds.high_m = at_least(grounds.high_m, ground_m);
+            grounds.sum_m += under_m[m];
+            grounds.low_m = at_most(grounds.low_m, under_m[m]);
+            grounds.high_m = at_least(grounds.high_m, under_m[m]);
             grounds.count += 1.0F;
         }
     }
@@ -128,7 +100,7 @@ static grounds_t grounds_of(const terrain_hypothesis_t *h, uint16_t set)
 /* How well a rate goes with the slope that two mirrors or more on the ramp show. */
 static float steepness(const terrain_hypothesis_t *h)
 {
-    const grounds_t grounds = grounds_of(h, h->ramps);
+    const grounds_t grounds = grounds_of(&h->x[TERRAIN_GROUND], h->ramps);
     const float apart_m = grounds.high_m - grounds.low_m;
     const float slope_2 = (apart_m * apart_m + 2.0F * TERRAIN_OWN_M * TERRAIN_OWN_M) / (SPOTS_M * SPOTS_M);
     const float rate_mps = h->x[TERRAIN_RATE];
@@ -276,13 +248,46 @@ static void take_over(terrain_t *t, uint16_t count)
 
 /* ---- what it means */
 
-/* The ground under the middle one of three mirrors, the mean of two. */
-static float middle_m(const terrain_hypothesis_t *h, uint16_t set)
+/* The middle one of three, the mean of two. */
+static float middle_m(const float under_m[MIRROR_COUNT], uint16_t set)
 {
-    const grounds_t grounds = grounds_of(h, set);
+    const grounds_t grounds = grounds_of(under_m, set);
 
     return (grounds.count > 2.0F) ? grounds.sum_m - grounds.low_m - grounds.high_m
                                   : grounds.sum_m / grounds.count;
+}
+
+void terrain_begin(terrain_t *terrain, const filter_t *filter, const terrain_heights_t *heights,
+                   float altitude_m, float ground_m)
+{
+    terrain_hypothesis_t *const first = &terrain->kept[0];
+
+    if (terrain->count != 0U) {
+        return;
+    }
+    terrain->count = 1U;
+    for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
+        terrain_hypothesis_reset_variance(first, i, 0.0F);
+        first->x[i] = 0.0F;
+    }
+    first->share = 1.0F;
+    first->ramps = 0U;
+    first->x[TERRAIN_ALTITUDE] = altitude_m;
+    first->x[TERRAIN_SPEED] = filter->estimate.speed_mps;
+    first->x[TERRAIN_BIAS] = filter->estimate.bias_mps2;
+    for (uint16_t i = 0U; i <= (uint16_t)TERRAIN_BIAS; ++i) {
+        first->p[i][i] = filter->covariance[i][i];
+    }
+    const float middle_height_m = middle_m(heights->height_m, heights->valid);
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        const bool tells = has(heights->valid, m);
+        const float apart_m = tells ? middle_height_m - heights->height_m[m] : 0.0F;
+        const float sigma_m = tells ? TERRAIN_OWN_M : TERRAIN_STEP_M;
+        const uint16_t ground = terrain_ground_of(m);
+
+        first->x[ground] = ground_m + ((fabsf(apart_m) > APART_M) ? apart_m : 0.0F);
+        first->p[ground][ground] = sigma_m * sigma_m;
+    }
 }
 
 terrain_shown_t terrain_scan(terrain_t *t, const terrain_heights_t *heights, float gap_s)
@@ -307,6 +312,6 @@ terrain_shown_t terrain_scan(terrain_t *t, const terrain_heights_t *heights, flo
         .bias_mps2 = t->way.x[TERRAIN_BIAS],
         .speed_variance = t->way.p[TERRAIN_SPEED][TERRAIN_SPEED],
         .bias_variance = t->way.p[TERRAIN_BIAS][TERRAIN_BIAS],
-        .ground_m = middle_m(&t->way, heights->valid),
+        .ground_m = middle_m(&t->way.x[TERRAIN_GROUND], heights->valid),
     };
 }

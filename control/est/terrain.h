@@ -83,9 +83,10 @@ typedef struct {
 } terrain_shown_t;
 
 /* Begins with what a filter knows, where no hypothesis is kept. altitude_m: above the ground of the start.
- * ground_m: that of all mirrors, as the filter thinks; the first heights then correct the altitude, and not
- * the ground. */
-void terrain_begin(terrain_t *terrain, const filter_t *filter, float altitude_m, float ground_m);
+ * ground_m: under the middle mirror, as the filter thinks. A mirror whose first height differs by more than
+ * noise is over another ground. What all heights are off by in common rather corrects the altitude. */
+void terrain_begin(terrain_t *terrain, const filter_t *filter, const terrain_heights_t *heights,
+                   float altitude_m, float ground_m);
 
 /* Moves those that are kept over dt_s; bias_mps2: drift of the bias, per root second. */
 void terrain_predict(terrain_t *terrain, const motion_t *motion, float dt_s, float bias_mps2);

@@ -1,6 +1,6 @@
 /* What breaks: the terrain height drifts. So it is forgotten slowly, and the setpoint stays above the ground.
  * A hard climb looks to the filter like ground that falls: 10 to 40 mm were held too low after a take-off. So
- * the rate of the terrain does not count in a climb. */
+ * the rate of the terrain does not count before the reference is reached; its steps do. */
 #include "control/est/terrain_keep.h"
 
 #include "control/between.h"
@@ -12,20 +12,21 @@
 void terrain_keep_start(terrain_keep_t *keep, float terrain_m)
 {
     keep->terrain_m = terrain_m;
+    keep->arrived_m = 0.0F;
 }
 
 float terrain_keep_setpoint_m(terrain_keep_t *keep, float reference_m, const terrain_keep_ground_t *ground,
                               float step_s)
 {
-    const bool arrives = keep->arrived_m != reference_m;
     const float ignored_m = ground->height_m - keep->terrain_m;
 
     if (ground->how == TERRAIN_KEEP_NOT || reference_m != keep->reference_m) {
         keep->terrain_m = ground->height_m;
+        keep->arrived_m = (reference_m == keep->reference_m) ? keep->arrived_m : 0.0F;
         keep->reference_m = reference_m;
         return reference_m;
     }
     keep->terrain_m += ignored_m * step_s / ((ground->how == TERRAIN_KEEP_GROUND) ? GROUND_S : STEPS_S) +
-                       (arrives ? ground->rate_mps * step_s : 0.0F);
+                       ((keep->arrived_m == reference_m) ? 0.0F : ground->rate_mps * step_s);
     return at_least(reference_m - ignored_m, TERRAIN_LEAST_M);
 }

@@ -1,6 +1,6 @@
 /* How probable a value is that a scan shows: a step of the terrain, a constant, what the accelerometer tells,
- * a motion that mirrors share. Densities integrate to one, but for STEP_SHARE, and density_of_motion(), a
- * ratio.
+ * a motion that mirrors share. Densities integrate to one, but for STEP_SHARE, REST_MPS2, and
+ * density_of_motion(), a ratio.
  *
  * Millimetres, m/s2. Pure, without a state. Context: any. */
 #ifndef CONTROL_SENSE_BELIEF_DENSITY_H

@@ -1,5 +1,5 @@
 /* What the heights have not shown yet: the climb of a take-off, the climb after a step of the terrain towards
- * the vehicle, and the descent after a far fall of the terrain. Until then the beam may be blocked.
+ * the vehicle, and a motion after a far fall of the terrain. Until then the beam may be blocked.
  *
  * Metres and seconds. Pure; the caller owns the state, all zero at first. Context: one Task. */
 #ifndef CONTROL_SENSE_CONFIRMATION_H
@@ -14,7 +14,7 @@ typedef struct {
     bool proved;        /* the heights have confirmed a climb since the ground */
     float near_m;       /* height after the step that made `unconfirmed` true */
     float quiet_s;      /* how long the law has not wanted to climb */
-    bool terrain_fell;  /* the terrain has fallen far, and no descent has shown in the heights since */
+    bool terrain_fell;  /* the terrain has fallen far, and the heights have shown no motion since */
     float after_fall_m; /* height after that step */
 } confirmation_t;
 

@@ -25,7 +25,9 @@ void setUp(void)
     filter_reset_covariance(&filter);
     memset(&terrain, 0, sizeof terrain);
     altitude_m = 0.6F;
-    terrain_begin(&terrain, &filter, altitude_m, 0.0F);
+    const terrain_heights_t heights = {.valid = ALL, .height_m = {0.6F, 0.6F, 0.6F}};
+
+    terrain_begin(&terrain, &filter, &heights, altitude_m, 0.0F);
     x_m = -1.5F;
     speed_mps = SPEED_MPS;
     noise = 1U;
@@ -88,8 +90,10 @@ void test_the_first_scan_corrects_the_altitude_and_not_the_ground(void)
         filter_reset_covariance(&filter);
         filter_reset_variance(&filter, FILTER_HEIGHT, 0.03F * 0.03F);
         memset(&terrain, 0, sizeof terrain);
-        terrain_begin(&terrain, &filter, 0.85F + off_m, 0.25F);
-        see(&(terrain_heights_t){.valid = ALL, .height_m = {0.6F, 0.6F, 0.6F}});
+        const terrain_heights_t heights = {.valid = ALL, .height_m = {0.6F, 0.6F, 0.6F}};
+
+        terrain_begin(&terrain, &filter, &heights, 0.85F + off_m, 0.25F);
+        see(&heights);
         TEST_ASSERT_FLOAT_WITHIN(0.006F, 0.85F, shown.altitude_m);
         TEST_ASSERT_FLOAT_WITHIN(0.006F, 0.25F, shown.ground_m);
     }
@@ -192,11 +196,40 @@ void test_a_lurch_over_level_ground_is_no_ramp(void)
     }
 }
 
+/* Begun over a slope of 20 degrees, half over an edge, and with a mirror that tells nothing yet. */
+void test_what_the_mirrors_differ_by_at_the_begin_is_the_ground_s(void)
+{
+    static const terrain_heights_t begins[] = {
+        {.valid = ALL, .height_m = {0.6F, 0.56F, 0.64F}},
+        {.valid = ALL, .height_m = {0.6F, 0.35F, 0.6F}},
+        {.valid = ALL & ~(1U << MIRROR_AFT), .height_m = {0.6F, 0.6F, 0.0F}},
+    };
+
+    for (int k = 0; k < 3; k++) {
+        const filter_t filter = {.estimate = {.height_m = 0.6F}};
+
+        memset(&terrain, 0, sizeof terrain);
+        terrain_begin(&terrain, &filter, &begins[k], 0.6F, 0.0F);
+        for (int i = 0; i < 5; i++) {
+            terrain_heights_t heights = begins[k];
+
+            if (i == 4 && k == 2) { /* it shows a ground of 0.1 m at once */
+                heights = (terrain_heights_t){.valid = ALL, .height_m = {0.6F, 0.6F, 0.5F}};
+            }
+            see(&heights);
+            TEST_ASSERT_FLOAT_WITHIN(0.002F, 0.6F, shown.altitude_m);
+            TEST_ASSERT_FLOAT_WITHIN(0.002F, 0.0F, shown.ground_m);
+        }
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.005F, 0.1F, terrain.kept[0].x[terrain_ground_of((uint16_t)MIRROR_AFT)]);
+}
+
 void test_a_mirror_that_tells_nothing_keeps_its_ground(void)
 {
     const uint16_t aft = terrain_ground_of((uint16_t)MIRROR_AFT);
 
     fly(0.0F, ALL);
+    see(&(terrain_heights_t){.valid = ALL, .height_m = {0.6F, 0.6F, 0.5F}});
     const float known_m = terrain.kept[0].x[aft];
     for (int i = 0; i < 5; i++) {
         fly(0.0F, ALL & ~(1U << MIRROR_AFT));

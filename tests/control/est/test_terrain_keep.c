@@ -53,6 +53,7 @@ void test_the_rate_of_the_terrain_counts_once_the_reference_was_reached(void)
     for (int arrived = 0; arrived < 2; arrived++) {
         setUp();
         ground.height_m = 0.0F;
+        (void)terrain_keep_setpoint_m(&keep, 0.60F, &ground, 0.0F);
         keep.arrived_m = (arrived != 0) ? 0.60F : 0.0F;
         for (int k = 0; k < 10; k++) {
             held_m[arrived] = terrain_keep_setpoint_m(&keep, 0.60F, &ground, 0.1F);
@@ -61,6 +62,24 @@ void test_the_rate_of_the_terrain_counts_once_the_reference_was_reached(void)
     }
     TEST_ASSERT_FLOAT_WITHIN(0.006F, 0.60F, held_m[0]); /* a cycle late */
     TEST_ASSERT_FLOAT_WITHIN(0.002F, 0.645F, held_m[1]);
+}
+
+void test_a_reference_that_comes_back_is_reached_anew(void)
+{
+    for (int started = 0; started < 2; started++) {
+        setUp();
+        (void)setpoint_m(0.60F, 0.0F, false);
+        keep.arrived_m = 0.60F;
+        (void)setpoint_m(0.60F, 0.0F, false);
+        TEST_ASSERT_EQUAL_FLOAT(0.60F, keep.arrived_m);
+        if (started != 0) {
+            terrain_keep_start(&keep, 0.0F);
+        } else {
+            (void)setpoint_m(0.90F, 0.0F, false);
+            (void)setpoint_m(0.60F, 0.0F, false);
+        }
+        TEST_ASSERT_EQUAL_FLOAT(0.0F, keep.arrived_m);
+    }
 }
 
 void test_a_start_forgets_what_the_terrain_has_done(void)

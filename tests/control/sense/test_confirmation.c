@@ -161,6 +161,13 @@ void test_deep_is_a_fall_of_the_terrain_beyond_forty_centimetres(void)
     height(0.784F);
     TEST_ASSERT_FALSE(senses.confirmation.terrain_fell);
     hover();
+    height(0.905F); /* what climbs shows that the beam is not blocked, too */
+    height(0.965F);
+    height(1.024F);
+    TEST_ASSERT_TRUE(senses.confirmation.terrain_fell);
+    height(1.026F);
+    TEST_ASSERT_FALSE(senses.confirmation.terrain_fell);
+    hover();
     terrain_fell(true);
     height(0.2F); /* a step back */
     TEST_ASSERT_FALSE(senses.confirmation.terrain_fell);
