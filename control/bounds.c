@@ -83,13 +83,14 @@ static float slow_climb_n(const situation_t *now)
     return (evidence->rise_mps < 0.5F * UNCONFIRMED_MPS) ? at_most(braked_n, slow_n) : slow_n;
 }
 
-/* The same of a descent. Where the heights stand still, what the law knows of the speed is theirs: a vehicle
- * of little drag fell at 1 m/s. So then the speed is that of the worlds in which all mirrors lie. */
+/* Where the heights stand still, what the law knows of the speed is theirs: a vehicle of little drag fell at
+ * 1 m/s by them. So then the speed is that of the worlds in which all mirrors lie. */
 static bool falls_unshown(const evidence_t *evidence)
 {
     return evidence->speed_mps < -UNCONFIRMED_MPS && fabsf(evidence->rise_mps) < 0.5F * UNCONFIRMED_MPS;
 }
 
+/* As slow_climb_n(), of a descent. */
 static float slow_descent_n(const situation_t *now)
 {
     const evidence_t *evidence = now->evidence;
