@@ -65,7 +65,7 @@ float terrain_innovation_density(terrain_innovation_t innovation, uint16_t set);
 /* Corrects it with a mirror's height. */
 void terrain_hypothesis_correct(terrain_hypothesis_t *hypothesis, uint16_t mirror, float height_m);
 
-/* The ground under this mirror is what its height tells; it was not known, or has stepped. */
+/* The ground under this mirror is what its height tells: it has stepped. */
 void terrain_hypothesis_meet(terrain_hypothesis_t *hypothesis, uint16_t mirror, float height_m);
 
 /* They are so near to each other that one Gaussian tells both. */
