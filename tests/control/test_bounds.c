@@ -203,7 +203,7 @@ void test_a_descent_that_the_heights_do_not_show_is_braked_by_the_speed_without_
 }
 
 /* LOWERING ends a climb that the hover thrust may have made: a bound by that thrust would keep it up. */
-void test_what_is_lowered_is_braked_but_never_kept_from_sinking(void)
+void test_what_is_lowered_is_braked_only_where_it_falls_and_the_heights_stand_still(void)
 {
     in_state(FLIGHT_LOWERING);
     mode_is(FLIGHT_MODE_EST_LAND);
