@@ -64,7 +64,7 @@ static void gather(telecommand_collector_t *collector, char character)
     if (!collector->started) {
         collector->strays += telecommand_is_blank(character) ? 0U : 1U;
     } else if (line->length == TELECOMMAND_LINE_MAX) {
-        line->overlong = true;
+        line->overlong = line->overlong || !telecommand_is_blank(character);
     } else {
         line->text[line->length++] = character;
     }
@@ -171,10 +171,16 @@ static bool is_zero(const char *text, uint16_t length)
     return any && points <= 1U;
 }
 
+/* By the name alone, whatever stands behind it: in trouble people type anything. */
+static bool stops_by_name(const telecommand_t *command)
+{
+    return is_named(command, "STOP") || is_named(command, "LAND");
+}
+
 /* Which nothing may hold up. */
 static bool stops(const telecommand_t *command)
 {
-    return is_named(command, "STOP") || is_named(command, "LAND") ||
+    return stops_by_name(command) ||
            (is_named(command, "SETR") && is_zero(command->argument, command->argument_length));
 }
 
@@ -248,6 +254,13 @@ static telecommand_status_t split(const telecommand_line_t *line, uint16_t sum_a
         ++at;
     }
     const telecommand_status_t status = take_name(line, &at, end, command);
+
+    if (status == TELECOMMAND_OK && stops_by_name(command)) {
+        return TELECOMMAND_OK;
+    }
+    if (line->overlong) {
+        return reject(command, TELECOMMAND_OVERLONG);
+    }
     return status == TELECOMMAND_OK ? take_argument(line, at, end, command) : status;
 }
 
@@ -261,9 +274,6 @@ static telecommand_status_t understand(const telecommand_line_t *line, uint16_t 
     }
     if (line->bare) {
         return TELECOMMAND_BARE;
-    }
-    if (line->overlong) {
-        return TELECOMMAND_OVERLONG;
     }
     return split(line, sum_at, command);
 }

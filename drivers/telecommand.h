@@ -13,7 +13,7 @@
 
 #include "drivers/octet.h"
 
-#define TELECOMMAND_LINE_MAX 32U /* characters from '#' to before the line end */
+#define TELECOMMAND_LINE_MAX 32U /* characters from '#' to before the line end; blanks behind them are dropped */
 #define TELECOMMAND_NAME_MAX 12U
 
 /* A letter in upper case; any other character as it is. */
@@ -66,13 +66,14 @@ typedef struct {
 } telecommand_t;
 
 /* Parses one collected line. Always writes *command; name and argument are empty unless the result is
- * TELECOMMAND_OK. A sum that is present must be right. sum_required: a sum must be present, except for
+ * TELECOMMAND_OK. `STOP` and `LAND` have no argument: what stands behind them is not read. A sum that is present must be right. sum_required: a sum must be present, except for
  * urgent lines. */
 telecommand_status_t telecommand_parse(const telecommand_line_t *line, bool sum_required,
                                        telecommand_t *command);
 
 /* True for an undamaged `#STOP`, `#LAND` or `#SETR 0` (the zero may be written in any way). Nothing may
- * delay such a line, so a wrong or missing sum is accepted. Any context. */
+ * delay such a line, so a wrong or missing sum is accepted; and behind the first two names any text, of any
+ * length. Any context. */
 bool telecommand_is_urgent(const telecommand_line_t *line);
 
 #endif

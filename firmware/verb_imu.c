@@ -76,10 +76,11 @@ static void write_count(answer_t *answer, const imu_view_t *view)
     static parameters_t parameters;
     static imu_sample_t latest;
     flight_outputs_t flight;
+    const bool none = view->status == RAZOR_OK && view->frames == 0U;
     const bool both = view->status == RAZOR_OK && view->raw.has_acceleration;
 
     telemetry_text(&answer->line, " seen:");
-    telemetry_text(&answer->line, both ? "accelerations+angles" : seen[view->status]);
+    telemetry_text(&answer->line, none ? "-" : both ? "accelerations+angles" : seen[view->status]);
     answer_count(answer, "period_ms", (view->period_us + US_PER_MS / 2U) / US_PER_MS);
     answer_count(answer, "frames", view->frames);
     imu_server_read(&latest);

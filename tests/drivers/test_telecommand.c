@@ -218,9 +218,27 @@ void test_an_overlong_line_gives_one_error_and_the_next_line_is_whole(void)
     assert_parses("#KD 0.008\n", "KD", "0.008");
 }
 
-void test_trailing_blanks_count_towards_the_length(void)
+void test_trailing_blanks_do_not_make_a_line_too_long(void)
 {
-    assert_error(TELECOMMAND_OVERLONG, "#GET                             \n");
+    assert_parses("#GET                             \n", "GET", "");
+    assert_parses("#SETR 0                                     \n", "SETR", "0");
+    assert_error(TELECOMMAND_OVERLONG, "#GET                             KP\n");
+}
+
+void test_text_of_any_length_and_kind_behind_a_stop_is_not_read(void)
+{
+    static const char *const lines[] = {"#LAND please come down now, it is odd\n", "#stop \xF1\x01\n",
+                                        "#STOP 1234567890123456789012345678*0000\n",
+                                        "# land                                 at once\n"};
+
+    for (uint16_t i = 0U; i < sizeof lines / sizeof lines[0]; ++i) {
+        TEST_ASSERT_EQUAL(1U, feed(lines[i]));
+        TEST_ASSERT_TRUE(telecommand_is_urgent(&collector.line));
+        TEST_ASSERT_EQUAL(TELECOMMAND_OK, telecommand_parse(&collector.line, true, &command));
+        TEST_ASSERT_EQUAL(0U, command.argument_length);
+    }
+    assert_error(TELECOMMAND_OVERLONG, "#STOPS 12345678901234567890123456789\n");
+    assert_error(TELECOMMAND_OVERLONG, "#SETR 0 please come down now, it is odd\n");
 }
 
 void test_nul_is_as_if_it_had_not_come(void)
@@ -430,7 +448,8 @@ void test_a_stop_a_landing_and_a_reference_of_zero_are_urgent_however_written(vo
 {
     static const char *const urgent[] = {"#STOP\n",     "# stop now \n", "#LAND\r",        "#land\n",
                                          "#SETR 0\n",   "#setr 0.0\n",   "#SETR -0\n",     "#SETR +.000\n",
-                                         "#SETR 00.\n", "noise #STOP\n", "#SETR 0.#LAND\n"};
+                                         "#SETR 00.\n", "noise #STOP\n", "#SETR 0.#LAND\n",
+                                         "#STOP 1234567890123456789012345678\n"};
     static const char *const others[] = {"#SETR 0.6\n",
                                          "#SETR\n",
                                          "#SETR .\n",
@@ -446,8 +465,7 @@ void test_a_stop_a_landing_and_a_reference_of_zero_are_urgent_however_written(vo
                                          "STOP\n",
                                          "\n",
                                          "#LOG STOP\n",
-                                         "#STOP\x01\n",
-                                         "#STOP 1234567890123456789012345678\n"};
+                                         "#STOP\x01\n"};
 
     for (uint16_t i = 0; i < sizeof urgent / sizeof urgent[0]; i++) {
         TEST_ASSERT_EQUAL(1U, feed(urgent[i]));

@@ -308,15 +308,16 @@ describe('the flight recorder', () => {
 });
 
 describe('logs', () => {
-  const titles = withSum('OK LOG 0 t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags,up_mps2,pulse_us,age_s');
-  const rows = [withSum('OK LOG 1 74.312,0.598,0.598,,0.600,7.123,-0.0123,0.0345,FLYING,0,-0.214,1383.6,0.081'), withSum('OK LOG 2 74.337,,0.598,,0.600,7.123,-0.0123,0.0345,FLYING,1,,1383.6,')];
+  const titles = withSum('OK LOG 0 t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags,up_mps2,pulse_us,age_s,bat_v,doubt,limit,bat,mf_rays,mf_mm,mf_spread_mm,mf_ms,mf_lie,m1_rays,m1_mm,m1_spread_mm,m1_ms,m1_lie,m2_rays,m2_mm,m2_spread_mm,m2_ms,m2_lie,out');
+  const rest = ','.repeat(20);
+  const rows = [withSum('OK LOG 1 74.312,0.598,0.598,,0.600,7.123,-0.0123,0.0345,FLYING,0,-0.214,1383.6,0.081' + rest), withSum('OK LOG 2 74.337,,0.598,,0.600,7.123,-0.0123,0.0345,FLYING,1,,1383.6,' + rest)];
   const telemetry = 'alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0';
   const dump = ['OK LOG records:2', titles, rows[0], telemetry, rows[1], 'OK LOG END lines:2', ''].join('\r\n');
   const xctu = (text: string): string => {
     const hex = [...text].map((c) => c.charCodeAt(0).toString(16).padStart(2, '0')).join('').toUpperCase();
     return `02-05-2015 11:44:56.017,-,RECV,${hex.slice(0, 64)}\n02-05-2015 11:44:56.020,-,SENT,234C4F470A\n02-05-2015 11:44:56.117,-,RECV,${hex.slice(64)}\n`;
   };
-  it('are as firmware writes them', () => expect(titles).toMatch(/\*0299$/)); // docs/operator.md
+  it('are as firmware writes them', () => expect(titles).toMatch(/\*5F9E$/)); // tests/firmware/test_verb_log.c
   it('may be a flight CSV', () => {
     const [flight] = readLog('t_s,meas_m,state,flags\n0.00,,GROUND,3\n0.01,0.5,FLYING,0\n0.02,0.', 'flight.csv');
     expect([flight!.time, flight!.columns.meas_m![1], flight!.notes.length]).toEqual([[0, 0.01], 0.5, 1]);
