@@ -2,7 +2,8 @@
 """Instructions of each step of the firmware on x86-64 at -O2, counted by callgrind, against baseline.csv.
 
 Usage: bench.py [--write] [--driver] [BUILD_DIRECTORY]
-  --write   makes the counts the new baseline
+  --write   makes the counts the new baseline, and puts them where they are told: the costs of tools/rta/plomada-est.csv, docs/realtime.md,
+            docs/reliability.md. What realtime.md prints by them then: tests/tools/rta/test_realtime_page.py PROGRAM --write
   --driver  only the scanner's driver
 
 A count is the same on every run, so a change of it is a change of the code (or of the compiler or the C library: then the
@@ -18,6 +19,7 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
 BASELINE = HERE / "baseline.csv"
 DEARER = 1.10
 FRAME_N, THREE_N = 101, 309
@@ -60,6 +62,36 @@ def write_baseline(baseline, counts):
             file.write(f"{name},{instructions},{baseline.get(name, {}).get('annex_us', '')}\n")
 
 
+def grouped(count):
+    return f"{count:,}".replace(",", " ")
+
+
+def estimates_ms(counts):
+    """What a cycle with a height of three mirrors costs, and one by TERRAIN IGNORE: the seed's law as measured, by the ratio of instructions."""
+    seed_ms = float(read_baseline()["TaskControl"]["annex_us"]) / 1000
+    return [seed_ms * counts[name] / counts["TaskControl"] for name in ("TaskControl_THREE", "TaskControl_IGNORE")]
+
+
+def tell(counts, root=ROOT):
+    """Puts them where they are told."""
+    three_ms, ignore_ms = (f"{cost:.2f}" for cost in estimates_ms(counts))
+    one, three, ignore = (grouped(counts[name]) for name in MUST)
+    for path, pattern, told in (
+            ("tools/rta/plomada-est.csv", r"(?m)(^TaskControl_height,task,\d+,\d+,\d+,)[\d.]+()", three_ms),
+            ("docs/realtime.md", r"(ramp costs )[\d.]+( ms)", ignore_ms),
+            ("docs/realtime.md", r"(TaskControl_height\.cost_ms=)[\d.]+()", ignore_ms),
+            ("docs/reliability.md", r"(`make bench` counts )[\d ]+\d( on x86-64)", one),
+            ("docs/reliability.md", r"(with one mirror, and )[\d ]+\d( with\s+three)", three),
+            ("docs/reliability.md", r"(cycle is estimated to take )[\d.]+( ms)", three_ms),
+            ("docs/reliability.md", r"(on a ramp it is )[\d ]+\d(: )", ignore),
+            ("docs/reliability.md", r"(on a ramp it is [\d ]+\d: \w+, )[\d.]+( ms)", ignore_ms)):
+        text = (root / path).read_text(encoding="utf-8")
+        changed, places = re.subn(pattern, lambda match, told=told: match[1] + told + match[2], text)
+        if places != 1:
+            sys.exit(f"bench: {path}: {places} places for {pattern}")
+        (root / path).write_text(changed, encoding="utf-8")
+
+
 def show(baseline, counts):
     """Prints the table; returns {step: ratio}."""
     ratios = {}
@@ -77,7 +109,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--write", action="store_true")
     parser.add_argument("--driver", action="store_true")
-    parser.add_argument("directory", nargs="?", type=Path, default=HERE.parents[1] / "build/bench")
+    parser.add_argument("directory", nargs="?", type=Path, default=ROOT / "build/bench")
     options = parser.parse_args()
     if shutil.which("valgrind") is None:
         print("bench: no valgrind: tools/setup/setup.sh bench")
@@ -90,6 +122,7 @@ def main():
     baseline = read_baseline()
     if options.write and not options.driver:
         write_baseline(baseline, counts)
+        tell(counts)
         baseline = read_baseline()
     ratios = show(baseline, counts)
     worst = max(ratios, key=ratios.get)
