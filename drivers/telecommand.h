@@ -13,7 +13,8 @@
 
 #include "drivers/octet.h"
 
-#define TELECOMMAND_LINE_MAX 32U /* characters from '#' to before the line end; blanks behind them are dropped */
+#define TELECOMMAND_LINE_MAX \
+    32U /* characters from '#' to before the line end; blanks behind them are dropped */
 #define TELECOMMAND_NAME_MAX 12U
 
 /* A letter in upper case; any other character as it is. */
@@ -66,8 +67,8 @@ typedef struct {
 } telecommand_t;
 
 /* Parses one collected line. Always writes *command; name and argument are empty unless the result is
- * TELECOMMAND_OK. `STOP` and `LAND` have no argument: what stands behind them is not read. A sum that is present must be right. sum_required: a sum must be present, except for
- * urgent lines. */
+ * TELECOMMAND_OK. `STOP` and `LAND` have no argument: what stands behind them is not read. A sum that is
+ * present must be right. sum_required: a sum must be present, except for urgent lines. */
 telecommand_status_t telecommand_parse(const telecommand_line_t *line, bool sum_required,
                                        telecommand_t *command);
 

@@ -446,26 +446,14 @@ void test_every_accepted_line_has_a_clean_name_and_a_trimmed_value(void)
 
 void test_a_stop_a_landing_and_a_reference_of_zero_are_urgent_however_written(void)
 {
-    static const char *const urgent[] = {"#STOP\n",     "# stop now \n", "#LAND\r",        "#land\n",
-                                         "#SETR 0\n",   "#setr 0.0\n",   "#SETR -0\n",     "#SETR +.000\n",
-                                         "#SETR 00.\n", "noise #STOP\n", "#SETR 0.#LAND\n",
-                                         "#STOP 1234567890123456789012345678\n"};
-    static const char *const others[] = {"#SETR 0.6\n",
-                                         "#SETR\n",
-                                         "#SETR .\n",
-                                         "#SETR -\n",
-                                         "#SETR 0.0.0\n",
-                                         "#SETR 0 1\n",
-                                         "#SETR 0-\n",
-                                         "#STOPS\n",
-                                         "#STO\n",
-                                         "#LANDING\n",
-                                         "#SETRX 0\n",
-                                         "#KP 0\n",
-                                         "STOP\n",
-                                         "\n",
-                                         "#LOG STOP\n",
-                                         "#STOP\x01\n"};
+    static const char *const urgent[] = {
+        "#STOP\n",     "# stop now \n", "#LAND\r",         "#land\n",
+        "#SETR 0\n",   "#setr 0.0\n",   "#SETR -0\n",      "#SETR +.000\n",
+        "#SETR 00.\n", "noise #STOP\n", "#SETR 0.#LAND\n", "#STOP 1234567890123456789012345678\n"};
+    static const char *const others[] = {"#SETR 0.6\n",   "#SETR\n",     "#SETR .\n",   "#SETR -\n",
+                                         "#SETR 0.0.0\n", "#SETR 0 1\n", "#SETR 0-\n",  "#STOPS\n",
+                                         "#STO\n",        "#LANDING\n",  "#SETRX 0\n",  "#KP 0\n",
+                                         "STOP\n",        "\n",          "#LOG STOP\n", "#STOP\x01\n"};
 
     for (uint16_t i = 0; i < sizeof urgent / sizeof urgent[0]; i++) {
         TEST_ASSERT_EQUAL(1U, feed(urgent[i]));
