@@ -3,7 +3,7 @@ set(CONTROL_SOURCES
     control/aim.c control/altitude.c control/approach.c control/arming.c control/around.c control/attitude.c control/battery.c control/battery_orders.c control/bounds.c control/calibration.c
     control/est/actuator.c control/est/cascade.c control/est/credit.c control/est/deadband.c control/est/dips.c control/est/effect.c control/est/innovation.c
     control/est/est_law.c control/est/estimator.c control/est/filter.c control/est/hover.c control/est/learning.c
-    control/est/ahead.c control/est/let_down.c control/est/lift_off.c control/est/roughness.c control/est/terrain.c control/est/terrain_hypothesis.c control/est/terrain_keep.c control/flight.c
+    control/est/ahead.c control/est/let_down.c control/est/lift_off.c control/est/roughness.c control/est/terrain.c control/est/terrain_hypothesis.c control/est/terrain_keep.c control/est/terrain_ramp.c control/flight.c
     control/guard.c control/handover.c control/imu_axes.c control/imu_finding.c control/imu_mapping.c control/imu_repeat.c control/imu_sample.c
     control/in_air.c control/laws/descent.c control/laws/law_descent.c control/laws/law_est.c control/laws/law_pid.c
     control/laws/law_pidt.c control/laws/laws.c control/laws/pid.c control/laws/pidt.c control/laws/stuck_pin.c control/median.c

@@ -282,18 +282,23 @@ static height_outcome_t check_and_fuse(estimator_t *e, float height_m, uint16_t 
     return outcome;
 }
 
-/* Height with the tilt at the instant of the rays. The median of five frames is 50 ms old. */
-static float height_at_rays_m(const estimator_t *e, const altitude_t *altitude, uint32_t rays_us)
+/* The frame with the tilt at the instant of the rays. The median of five frames is 50 ms old. */
+static const estimator_frame_t *frame_of_rays(const estimator_t *e, uint32_t rays_us)
 {
     const uint32_t shown_us = rays_us + TILT_AGE_US - (uint32_t)(0.5e6F * FRAME_S);
-    float roll_rad = e->latest.roll_rad;
-    float pitch_rad = e->latest.pitch_rad;
+    const estimator_frame_t *frame = &e->latest;
 
     for (uint16_t i = e->frame_count; i > 0U && !before(e->frames[i - 1U].time_us, shown_us); --i) {
-        roll_rad = e->frames[i - 1U].roll_rad;
-        pitch_rad = e->frames[i - 1U].pitch_rad;
+        frame = &e->frames[i - 1U];
     }
-    return altitude_at_tilt(altitude, roll_rad, pitch_rad) * 0.001F;
+    return frame;
+}
+
+static float height_at_rays_m(const estimator_t *e, const altitude_t *altitude, uint32_t rays_us)
+{
+    const estimator_frame_t *frame = frame_of_rays(e, rays_us);
+
+    return altitude_at_tilt(altitude, frame->roll_rad, frame->pitch_rad) * 0.001F;
 }
 
 height_outcome_t estimator_fuse_height(estimator_t *e, const altitude_t *altitude, uint32_t rays_us,
@@ -326,7 +331,10 @@ height_outcome_t estimator_fuse_height(estimator_t *e, const altitude_t *altitud
 /* The heights of the mirrors at the instant of `altitude`: each has its own. */
 terrain_heights_t estimator_heights(const estimator_t *e, const terrain_sight_t *sight, uint32_t rays_us)
 {
-    terrain_heights_t heights = {.valid = 0U};
+    const float pitch_rad = frame_of_rays(e, rays_us)->pitch_rad;
+    terrain_heights_t heights = {.lean = tanf(pitch_rad),
+                                 .reach_m = (sight->altitude->slant_mm - sight->altitude->distance_mm) *
+                                            0.001F * sinf(pitch_rad)};
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         const altitude_t *one = &sight->mirrors[m];

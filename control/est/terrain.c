@@ -1,5 +1,5 @@
-/* What breaks: one Gaussian for all ways after each scan. The wrong rate carries all mirrors with it, the law
- * follows, and what it does then agrees with it. The belief about liars (sense/belief.h) is not asked: it
+/* What breaks: one Gaussian for all ways after each scan. The wrong slope carries all mirrors with it, the
+ * law follows, and what it does then agrees with it. The belief about liars (sense/belief.h) is not asked: it
  * takes the one mirror that still shows level ground for blocked while two climb a ramp (0.999 in
  * simulation), because only here the motion is known. */
 #include "control/est/terrain.h"
@@ -8,19 +8,10 @@
 #include <stddef.h>
 
 #include "control/between.h"
+#include "control/est/terrain_ramp.h"
+#include "control/imu_sample.h"
 
-/* ---- noise models: see terrain.h */
-#define RAMP_MPS 0.4F          /* rms of a rate, as the seed's ramp: 0.25 m in 0.7 s */
-#define RAMP_DRIFT_MPS2_2 0.1F /* (m/s)2 a second: half of RAMP_MPS in 0.4 s */
-
-/* ---- shares of the scans, for each mirror */
-#define RAMP_BEGINS 0.005F /* one of 200: the seed's course has one ramp in 20 s */
-#define RAMP_GOES_ON 0.85F /* the seed's ramp takes 7 scans, 0.7 s: 1 - 1/7 */
-#define RAMP_NEXT 0.2F     /* of a mirror, where another one is on it: 0.2 m of bracket at 0.4 m/s */
-
-/* ---- a ramp's rate is its slope times the speed over it */
-#define SPEED_MPS 1.0F /* of that speed; the seed's vehicle and a careful pilot fly 0.3 to 0.6 m/s */
-#define SPOTS_M 0.12F  /* between the spots of two mirrors; the default geometry */
+#define RAMP_SLOPE 0.7F /* rms, before a mirror is on it; the seed's ramp: 0.25 m over 0.28 m */
 
 #define APART_M (3.0F * 1.41421356F * TERRAIN_OWN_M) /* three sigmas of two heights: another ground */
 
@@ -61,22 +52,6 @@ void terrain_predict(terrain_t *terrain, const motion_t *motion, float dt_s, flo
 
 /* ---- the ways of one scan */
 
-/* Probability of the mirrors that rise with a ramp, before the scan, after those that were on one. */
-static float prior_of(uint16_t ramps, uint16_t told, uint16_t rising)
-{
-    float share = 1.0F;
-
-    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        const float begins = RAMP_BEGINS + ((ramps != 0U) ? RAMP_NEXT : 0.0F);
-        const float rises = has(ramps, m) ? RAMP_GOES_ON : begins;
-
-        if (has(told, m)) {
-            share *= has(rising, m) ? rises : 1.0F - rises;
-        }
-    }
-    return share;
-}
-
 /* The grounds under some mirrors. */
 typedef struct {
     float sum_m, low_m, high_m, count;
@@ -97,18 +72,6 @@ static grounds_t grounds_of(const float under_m[MIRROR_COUNT], uint16_t set)
     return grounds;
 }
 
-/* How well a rate goes with the slope that two mirrors or more on the ramp show. */
-static float steepness(const terrain_hypothesis_t *h)
-{
-    const grounds_t grounds = grounds_of(&h->x[TERRAIN_GROUND], h->ramps);
-    const float apart_m = grounds.high_m - grounds.low_m;
-    const float slope_2 = (apart_m * apart_m + 2.0F * TERRAIN_OWN_M * TERRAIN_OWN_M) / (SPOTS_M * SPOTS_M);
-    const float rate_mps = h->x[TERRAIN_RATE];
-    const float rate_2 = h->p[TERRAIN_RATE][TERRAIN_RATE] + slope_2 * SPEED_MPS * SPEED_MPS;
-
-    return (grounds.count < 2.0F) ? 1.0F : expf(-0.5F * rate_mps * rate_mps / rate_2);
-}
-
 /* What the mirrors that do not rise add to the density of a way: those that step, and those that stay. As all
  * densities here it is counted in the densest that a height can have, PER_OWN: so no way is denser than its
  * share before the scan. */
@@ -127,10 +90,11 @@ static float steps_of(const float *stepped, uint16_t staying, uint16_t steps)
 }
 
 /* The scan came about so. */
-static void go_on(terrain_hypothesis_t *h, const terrain_heights_t *heights, uint16_t told, uint16_t steps)
+static void go_on(terrain_hypothesis_t *h, const terrain_heights_t *heights, const terrain_passage_t *passage,
+                  uint16_t steps, const float off_m[MIRROR_COUNT])
 {
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        if (has(told, m) && !has(steps, m)) {
+        if (has(passage->told, m) && !has(steps, m)) {
             terrain_hypothesis_correct(h, m, heights->height_m[m]);
         }
     }
@@ -139,7 +103,7 @@ static void go_on(terrain_hypothesis_t *h, const terrain_heights_t *heights, uin
             terrain_hypothesis_meet(h, m, heights->height_m[m]);
         }
     }
-    h->share *= steepness(h);
+    terrain_ramp_settle(h, passage, steps, off_m, heights->fore_m);
 }
 
 /* Among the next ones: with one that tells the same, or in a free place, or in place of the least. Returns
@@ -166,10 +130,11 @@ static uint16_t keep(terrain_hypothesis_t *next, uint16_t count, const terrain_h
 }
 
 /* All ways in which the same mirrors have risen. */
-static uint16_t step(terrain_t *t, const terrain_heights_t *heights, uint16_t told, uint16_t count)
+static uint16_t step(terrain_t *t, const terrain_heights_t *heights, const terrain_passage_t *passage,
+                     uint16_t count)
 {
     const terrain_innovation_t innovation = terrain_hypothesis_innovation(&t->risen, heights->height_m);
-    const uint16_t staying = told & (uint16_t)~t->risen.ramps;
+    const uint16_t staying = passage->told & (uint16_t)~t->risen.ramps;
     float stepped[MIRROR_COUNT];
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
@@ -181,14 +146,16 @@ static uint16_t step(terrain_t *t, const terrain_heights_t *heights, uint16_t to
         float density = is_way ? t->risen.share * steps_of(stepped, staying, steps) : 0.0F;
 
         density *= (density > NO_WAY * t->best)
-                       ? terrain_innovation_density(innovation, told & (uint16_t)~steps)
+                       ? terrain_innovation_density(innovation, passage->told & (uint16_t)~steps)
                        : 0.0F;
         if (density > NO_WAY * t->best) {
-            t->best = at_least(t->best, density);
             t->way = t->risen;
             t->way.share = density;
-            go_on(&t->way, heights, told, steps);
-            count = keep(t->next, count, &t->way);
+            go_on(&t->way, heights, passage, steps, innovation.off_m);
+            if (t->way.share > NO_WAY * t->best) { /* two of no share would be merged to no number */
+                t->best = at_least(t->best, t->way.share);
+                count = keep(t->next, count, &t->way);
+            }
         }
     }
     return count;
@@ -199,30 +166,39 @@ static uint16_t branch(terrain_t *t, const terrain_hypothesis_t *from, const ter
                        float gap_s, uint16_t count)
 {
     const uint16_t told = heights->valid;
+    const float moved_m = heights->reach_m - t->reach_m;
+    const terrain_passage_t passage = terrain_ramp_passage(from, told, moved_m, gap_s);
 
     for (uint16_t rising = 0U; rising <= told; ++rising) {
         const bool is_way = (rising & (uint16_t)~told) == 0U;
-        const float share = is_way ? from->share * prior_of(from->ramps, told, rising) : 0.0F;
+        const float share = is_way ? from->share * terrain_ramp_prior(&passage, rising) : 0.0F;
 
         if (share > NO_WAY * t->best) {
             t->risen = *from;
             t->risen.share = share;
-            terrain_hypothesis_rise(&t->risen, rising, gap_s);
-            count = step(t, heights, told, count);
+            terrain_hypothesis_rise(&t->risen, rising, moved_m, gap_s);
+            count = step(t, heights, &passage, count);
         }
     }
     return count;
 }
 
-/* Before a scan: the common noise, and the drift of a ramp's rate. */
-static void expect(terrain_hypothesis_t *h, float gap_s)
+/* Before a scan: the common noise, and the way over the ground. The next ramp may have any slope. */
+static void expect(terrain_hypothesis_t *h, float gained_mps, float gap_s)
 {
     h->p[TERRAIN_ALTITUDE][TERRAIN_ALTITUDE] += TERRAIN_COMMON_M * TERRAIN_COMMON_M;
+    terrain_hypothesis_travel(h, gained_mps, gap_s);
     if (h->ramps == 0U) {
-        h->x[TERRAIN_RATE] = 0.0F;
-        terrain_hypothesis_reset_variance(h, TERRAIN_RATE, RAMP_MPS * RAMP_MPS);
+        h->x[TERRAIN_SLOPE] = 0.0F;
+        terrain_hypothesis_reset_variance(h, TERRAIN_SLOPE, RAMP_SLOPE * RAMP_SLOPE);
     }
-    h->p[TERRAIN_RATE][TERRAIN_RATE] += RAMP_DRIFT_MPS2_2 * gap_s;
+}
+
+/* The tilt of this scan is that of the next one's begin. */
+static void note_tilt(terrain_t *t, const terrain_heights_t *heights)
+{
+    t->reach_m = heights->reach_m;
+    t->lean = heights->lean;
 }
 
 /* The next ones become those that are kept, where any way is possible. The most probable is the first: it
@@ -266,6 +242,7 @@ void terrain_begin(terrain_t *terrain, const filter_t *filter, const terrain_hei
         return;
     }
     terrain->count = 1U;
+    note_tilt(terrain, heights);
     for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
         terrain_hypothesis_reset_variance(first, i, 0.0F);
         first->x[i] = 0.0F;
@@ -278,6 +255,7 @@ void terrain_begin(terrain_t *terrain, const filter_t *filter, const terrain_hei
     for (uint16_t i = 0U; i <= (uint16_t)TERRAIN_BIAS; ++i) {
         first->p[i][i] = filter->covariance[i][i];
     }
+    first->p[TERRAIN_WAY_SPEED][TERRAIN_WAY_SPEED] = TERRAIN_WAY_MPS * TERRAIN_WAY_MPS;
     const float middle_height_m = middle_m(heights->height_m, heights->valid);
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         const bool tells = has(heights->valid, m);
@@ -292,16 +270,18 @@ void terrain_begin(terrain_t *terrain, const filter_t *filter, const terrain_hei
 
 terrain_shown_t terrain_scan(terrain_t *t, const terrain_heights_t *heights, float gap_s)
 {
+    const float gained_mps = -IMU_GRAVITY_MPS2 * 0.5F * (t->lean + heights->lean) * gap_s;
     uint16_t count = 0U;
 
     t->best = 0.0F;
     for (uint16_t i = 0U; i < t->count; ++i) {
-        expect(&t->kept[i], gap_s);
+        expect(&t->kept[i], gained_mps, gap_s);
     }
     for (uint16_t i = 0U; i < t->count; ++i) {
         count = branch(t, &t->kept[i], heights, gap_s, count);
     }
     take_over(t, count);
+    note_tilt(t, heights);
     t->way = t->kept[0];
     for (uint16_t i = 1U; i < t->count; ++i) {
         terrain_hypothesis_merge(&t->way, &t->kept[i]);

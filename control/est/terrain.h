@@ -10,8 +10,8 @@
  *
  *   it stays   most of the time
  *   it steps   by any amount (Laplace, 150 mm): an edge
- *   it rises   at the rate of a ramp, or falls. One rate counts for all mirrors: N(0, 0.4 m/s) when a ramp
- *              begins, then what the mirrors on it have shown, with a drift of 0.3 m/s per root second
+ *   it rises   with a ramp, or falls: by the ramp's slope, N(0, 0.7) when it begins, times the way of the
+ *              spot. That is flown, or made by a tilt; the tilt also tells how the flown one changes
  *
  * Every combination is a way in which the scan can have come about. Each way goes on from each hypothesis
  * that is kept, and makes a new one, whose probability is that of the mirrors' states times the density of
@@ -19,11 +19,12 @@
  * scan (multiple hypothesis tracking; Reid 1979, Blackman 2004). One scan cannot tell "the fore mirror is on
  * a ramp, and the vehicle rises" from "the aft mirror's ground falls"; some scans can.
  *
+ * A ramp is a plane, and the spots go over it in a row (terrain_ramp.h).
+ *
  * What is assumed: one mirror or two meet a ramp first; that all do in one scan is too rare to be looked at.
- * A ramp that rises fast is steep, because nobody flies faster than 1 m/s: where the mirrors on it show the
- * same ground, it is none, and heights that grow are a climb. Ground that rises evenly under all mirrors,
- * slower than the accelerometer can tell (some 0.05 m/s), is taken for a sinking vehicle. One mirror alone
- * shows too little; it is not asked.
+ * The vehicle flies fore or aft; over a ramp sideways the mirrors tell no slope. Ground that rises evenly
+ * under all mirrors, slower than the accelerometer can tell (some 0.05 m/s), is taken for a sinking vehicle.
+ * One mirror alone shows too little; it is not asked.
  *
  * Metres, seconds. Pure; the caller owns the state, all zero at first. Context: one Task. */
 #ifndef CONTROL_TERRAIN_H
@@ -37,7 +38,6 @@
 #include "control/est/terrain_hypothesis.h"
 
 #define TERRAIN_COMMON_M 0.004F /* sim/devices/scene.h: 3 mm of a scan, drawn up to 6 */
-#define TERRAIN_STEP_M 0.15F    /* mean size of a step (Laplace), as belief_world.c */
 
 /* What the mirrors show in one scan. */
 typedef struct {
@@ -58,6 +58,8 @@ typedef struct {
     uint16_t valid;               /* bits: mirrors that show one */
     float height_m[MIRROR_COUNT]; /* by mirror_t */
     float fore_m[MIRROR_COUNT];   /* of each spot, from the lateral axis */
+    float lean;                   /* tangent of the pitch; nose up > 0 */
+    float reach_m;                /* that the spots are farther fore by it */
 } terrain_heights_t;
 
 /* The lowest above the ground that a law flies by what it thinks of the ground; docs/control.md, Terrain. */
@@ -73,6 +75,7 @@ typedef struct {
     terrain_hypothesis_t kept[TERRAIN_KEPT];
     terrain_hypothesis_t next[TERRAIN_KEPT], risen, way; /* of one scan: too large for a stack */
     float best;                                          /* density of the best way so far */
+    float lean, reach_m;                                 /* of the scan before */
 } terrain_t;
 
 /* What a scan means. */

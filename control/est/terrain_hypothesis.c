@@ -1,6 +1,6 @@
-/* Theory: any text on Kalman filters. What breaks: a covariance that is left out. A rate that is thought
- * independent of the speed takes a part of each innovation, and then a hovering vehicle slides down a ramp
- * with it. */
+/* Theory: any text on extended Kalman filters. What breaks: a covariance that is left out. A slope that is
+ * thought independent of the speed takes a part of each innovation, and then a hovering vehicle slides down a
+ * ramp with it. */
 #include "control/est/terrain_hypothesis.h"
 
 #include <math.h>
@@ -8,11 +8,13 @@
 #include "control/between.h"
 
 #define OWN_M2 (TERRAIN_OWN_M * TERRAIN_OWN_M)
+#define EVEN_M 0.012F /* fitted: what a plane or a level is off, and the filter is too sure by */
+#define AIR_S 3.0F /* the air takes the speed: PX4's EKF2_MCOEF, 0.15 to 0.3 /s; 1.5 s made no difference */
 
 /* ---- one Gaussian tells two hypotheses whose means are nearer than this together */
-#define ALIKE_M 0.01F       /* two heights of a mirror: TERRAIN_OWN_M times root 2 */
-#define ALIKE_MPS 0.05F     /* what the filter knows of a speed between two heights: sqrt of its variance */
-#define ALIKE_RATE_MPS 0.1F /* ALIKE_M in a scan */
+#define ALIKE_M 0.01F    /* two heights of a mirror: TERRAIN_OWN_M times root 2 */
+#define ALIKE_MPS 0.05F  /* what the filter knows of a speed between two heights: sqrt of its variance */
+#define ALIKE_SLOPE 0.1F /* 10 mm between two mirrors */
 
 void terrain_hypothesis_reset_variance(terrain_hypothesis_t *h, uint16_t state, float variance)
 {
@@ -23,16 +25,22 @@ void terrain_hypothesis_reset_variance(terrain_hypothesis_t *h, uint16_t state, 
     h->p[state][state] = variance;
 }
 
-/* One state becomes itself plus `by` times another: mean and covariance. */
-static void add(terrain_hypothesis_t *h, uint16_t state, uint16_t other, float by)
+/* One state changes with another by a factor: the covariance. */
+static void depend(terrain_hypothesis_t *h, uint16_t state, uint16_t other, float by)
 {
-    h->x[state] += by * h->x[other];
     for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
         h->p[state][i] += by * h->p[other][i];
     }
     for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
         h->p[i][state] += by * h->p[i][other];
     }
+}
+
+/* One state becomes itself plus `by` times another: mean and covariance. */
+static void add(terrain_hypothesis_t *h, uint16_t state, uint16_t other, float by)
+{
+    h->x[state] += by * h->x[other];
+    depend(h, state, other, by);
 }
 
 void terrain_hypothesis_predict(terrain_hypothesis_t *h, const motion_t *motion, float dt_s, float bias_mps2)
@@ -46,14 +54,83 @@ void terrain_hypothesis_predict(terrain_hypothesis_t *h, const motion_t *motion,
     h->p[TERRAIN_BIAS][TERRAIN_BIAS] += bias_mps2 * bias_mps2 * dt_s;
 }
 
-void terrain_hypothesis_rise(terrain_hypothesis_t *h, uint16_t ramps, float gap_s)
+void terrain_hypothesis_travel(terrain_hypothesis_t *h, float gained_mps, float gap_s)
 {
-    h->ramps = ramps;
+    const float taken = gap_s / AIR_S;
+
+    add(h, TERRAIN_WAY_SPEED, TERRAIN_WAY_SPEED, -taken);
+    h->x[TERRAIN_WAY_SPEED] += gained_mps;
+    h->p[TERRAIN_WAY_SPEED][TERRAIN_WAY_SPEED] += 2.0F * taken * TERRAIN_WAY_MPS * TERRAIN_WAY_MPS;
+}
+
+/* The variance of a product has a part that no derivative tells: that of a slope and a speed which may both
+ * be anything. One that has just joined was on the ramp for an even share of the time. */
+static float rise_variance_m2(const terrain_hypothesis_t *h, float way_m, float gap_s, bool joins)
+{
+    const float slope = h->x[TERRAIN_SLOPE];
+    const float slope_2 = h->p[TERRAIN_SLOPE][TERRAIN_SLOPE];
+    const float both_m2 = slope_2 * h->p[TERRAIN_WAY_SPEED][TERRAIN_WAY_SPEED] * gap_s * gap_s;
+
+    return both_m2 + (joins ? (slope * slope + slope_2) * way_m * way_m / 12.0F : 0.0F);
+}
+
+void terrain_hypothesis_rise(terrain_hypothesis_t *h, uint16_t ramps, float moved_m, float gap_s)
+{
+    const float way_m = terrain_hypothesis_way_m(h, moved_m, gap_s);
+    const float slope = h->x[TERRAIN_SLOPE];
+
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        const bool joins = (h->ramps & (1U << m)) == 0U;
+        const float part = joins ? 0.5F : 1.0F;
+        const uint16_t ground = terrain_ground_of(m);
+
         if ((ramps & (1U << m)) != 0U) {
-            add(h, terrain_ground_of(m), TERRAIN_RATE, gap_s);
+            add(h, ground, TERRAIN_SLOPE, part * way_m);
+            depend(h, ground, TERRAIN_WAY_SPEED, part * slope * gap_s);
+            h->p[ground][ground] += rise_variance_m2(h, way_m, gap_s, joins);
         }
     }
+    h->ramps = ramps;
+}
+
+terrain_tie_t terrain_hypothesis_tie(const terrain_hypothesis_t *h, uint16_t mirror, uint16_t other,
+                                     float apart_m)
+{
+    const uint16_t ground = terrain_ground_of(mirror);
+    const bool start = other == (uint16_t)MIRROR_COUNT;
+    const uint16_t second = start ? ground : terrain_ground_of(other);
+    const float share = start ? 0.0F : 1.0F;
+    terrain_tie_t tie = {.off_m = share * h->x[second] + apart_m * h->x[TERRAIN_SLOPE] - h->x[ground]};
+
+    for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
+        tie.row[i] = h->p[ground][i] - share * h->p[second][i] - apart_m * h->p[TERRAIN_SLOPE][i];
+    }
+    tie.variance_m2 = at_least(tie.row[ground] - share * tie.row[second] - apart_m * tie.row[TERRAIN_SLOPE],
+                               0.0F) +
+                      EVEN_M * EVEN_M;
+    return tie;
+}
+
+/* A measurement whose covariances with the states are row: off by off, with this variance in all. */
+static void correct_by(terrain_hypothesis_t *h, const float row[TERRAIN_STATES], float off_m,
+                       float variance_m2)
+{
+    const float per_variance = 1.0F / variance_m2;
+
+    for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
+        const float gain = row[i] * per_variance;
+
+        h->x[i] += gain * off_m;
+        for (uint16_t j = i; j < TERRAIN_STATES; ++j) {
+            h->p[i][j] -= gain * row[j];
+            h->p[j][i] = h->p[i][j];
+        }
+    }
+}
+
+void terrain_hypothesis_bind(terrain_hypothesis_t *h, const terrain_tie_t *tie)
+{
+    correct_by(h, tie->row, tie->off_m, tie->variance_m2);
 }
 
 terrain_innovation_t terrain_hypothesis_innovation(const terrain_hypothesis_t *h,
@@ -111,16 +188,7 @@ void terrain_hypothesis_correct(terrain_hypothesis_t *h, uint16_t mirror, float 
     for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
         row[i] = h->p[TERRAIN_ALTITUDE][i] - h->p[ground][i];
     }
-    const float per_sum = 1.0F / (at_least(row[TERRAIN_ALTITUDE] - row[ground], 0.0F) + OWN_M2);
-    for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
-        const float gain = row[i] * per_sum;
-
-        h->x[i] += gain * innovation_m;
-        for (uint16_t j = i; j < TERRAIN_STATES; ++j) {
-            h->p[i][j] -= gain * row[j];
-            h->p[j][i] = h->p[i][j];
-        }
-    }
+    correct_by(h, row, innovation_m, at_least(row[TERRAIN_ALTITUDE] - row[ground], 0.0F) + OWN_M2);
 }
 
 void terrain_hypothesis_meet(terrain_hypothesis_t *h, uint16_t mirror, float height_m)
@@ -137,9 +205,9 @@ bool terrain_hypothesis_alike(const terrain_hypothesis_t *a, const terrain_hypot
 {
     const float off = (a->x[TERRAIN_ALTITUDE] - b->x[TERRAIN_ALTITUDE]) / ALIKE_M;
     const float speed = (a->x[TERRAIN_SPEED] - b->x[TERRAIN_SPEED]) / ALIKE_MPS;
-    const float rate = (a->ramps == 0U) ? 0.0F : (a->x[TERRAIN_RATE] - b->x[TERRAIN_RATE]) / ALIKE_RATE_MPS;
+    const float slope = (a->ramps == 0U) ? 0.0F : (a->x[TERRAIN_SLOPE] - b->x[TERRAIN_SLOPE]) / ALIKE_SLOPE;
 
-    return a->ramps == b->ramps && off * off + speed * speed + rate * rate < 1.0F;
+    return a->ramps == b->ramps && off * off + speed * speed + slope * slope < 1.0F;
 }
 
 void terrain_hypothesis_merge(terrain_hypothesis_t *into, const terrain_hypothesis_t *other)

@@ -1,11 +1,14 @@
 /* One hypothesis of terrain.h: a Kalman filter over the vehicle, the ramp and the ground under each mirror.
  *
  *   altitude  above the ground of the start; speed upwards; bias of the accelerometer: as in filter.h
- *   rate      at which the ground rises under the mirrors that are on the ramp
+ *   slope     of the ramp, uphill fore > 0: the ground rises so much a metre
+ *   way       the vehicle's speed over the ground, fore > 0
  *   ground    under each mirror, above the ground of the start
  *
- * Each has its covariance with the others. So while the aft mirror still shows level ground, the altitude and
- * the ramp's rate are both known; while all are on the ramp, speed less rate is known.
+ * The ground under a mirror on the ramp rises by the slope times the way of its spot: the vehicle's, and what
+ * a tilt moves the spot by. Each has its covariance with the others (an extended Kalman filter: that product
+ * is the only one). So while the aft mirror still shows level ground, all of them are known; while all are on
+ * the ramp, two of them tell its slope, and the tilt, which accelerates the vehicle, its way.
  *
  * Metres, seconds. Pure; the caller owns the state. Context: one Task. */
 #ifndef CONTROL_EST_TERRAIN_HYPOTHESIS_H
@@ -17,13 +20,18 @@
 #include "control/altitude.h"
 #include "control/est/filter.h"
 
+/* Rms of the speed over the ground that the tilt does not tell: one that is off by 0.6 degrees, for the 3 s
+ * in which the air takes what it makes. */
+#define TERRAIN_WAY_MPS 0.3F
+#define TERRAIN_STEP_M 0.15F /* mean size of a step (Laplace), as belief_world.c */
 #define TERRAIN_OWN_M 0.006F /* noise of each mirror: BELIEF_NOISE_MM of sense/belief_density.h, fitted */
 
 typedef enum {
     TERRAIN_ALTITUDE,
     TERRAIN_SPEED,
     TERRAIN_BIAS,
-    TERRAIN_RATE,
+    TERRAIN_SLOPE,
+    TERRAIN_WAY_SPEED,
     TERRAIN_GROUND, /* of the first mirror_t; the others follow */
     TERRAIN_STATES = TERRAIN_GROUND + (int)MIRROR_COUNT
 } terrain_state_t;
@@ -47,8 +55,32 @@ void terrain_hypothesis_reset_variance(terrain_hypothesis_t *hypothesis, uint16_
 void terrain_hypothesis_predict(terrain_hypothesis_t *hypothesis, const motion_t *motion, float dt_s,
                                 float bias_mps2);
 
-/* The ground under these mirrors has risen with the ramp for gap_s. */
-void terrain_hypothesis_rise(terrain_hypothesis_t *hypothesis, uint16_t ramps, float gap_s);
+/* The speed over the ground, gap_s later: what the tilt has added to it, and less what the air takes. */
+void terrain_hypothesis_travel(terrain_hypothesis_t *hypothesis, float gained_mps, float gap_s);
+
+/* Way of the spots in gap_s, if the tilt has moved them by moved_m. */
+static inline float terrain_hypothesis_way_m(const terrain_hypothesis_t *hypothesis, float moved_m,
+                                             float gap_s)
+{
+    return hypothesis->x[TERRAIN_WAY_SPEED] * gap_s + moved_m;
+}
+
+/* The ground under these mirrors has risen with the ramp, for gap_s. One that was not on it before is for a
+ * part of that. */
+void terrain_hypothesis_rise(terrain_hypothesis_t *hypothesis, uint16_t ramps, float moved_m, float gap_s);
+
+/* How far the ground under a mirror is off another ground. */
+typedef struct {
+    float off_m, variance_m2;
+    float row[TERRAIN_STATES]; /* covariances of -off_m with each state */
+} terrain_tie_t;
+
+/* The other: that under another mirror, plus the slope times apart_m; MIRROR_COUNT: that of the start. */
+terrain_tie_t terrain_hypothesis_tie(const terrain_hypothesis_t *hypothesis, uint16_t mirror, uint16_t other,
+                                     float apart_m);
+
+/* They are the same. tie: of this hypothesis, unchanged since. */
+void terrain_hypothesis_bind(terrain_hypothesis_t *hypothesis, const terrain_tie_t *tie);
 
 /* How far each height is off what is predicted, and the covariances of that. */
 typedef struct {

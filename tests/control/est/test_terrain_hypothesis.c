@@ -19,11 +19,12 @@ void setUp(void)
     h.x[TERRAIN_ALTITUDE] = 0.6F;
     h.x[TERRAIN_SPEED] = 0.2F;
     h.x[TERRAIN_BIAS] = 0.1F;
-    h.x[TERRAIN_RATE] = 0.4F;
+    h.x[TERRAIN_SLOPE] = 1.0F;
+    h.x[TERRAIN_WAY_SPEED] = 0.4F;
     h.p[TERRAIN_ALTITUDE][TERRAIN_ALTITUDE] = 1.0e-4F;
     h.p[TERRAIN_SPEED][TERRAIN_SPEED] = 0.04F;
     h.p[TERRAIN_BIAS][TERRAIN_BIAS] = 0.09F;
-    h.p[TERRAIN_RATE][TERRAIN_RATE] = 0.16F;
+    h.p[TERRAIN_SLOPE][TERRAIN_SLOPE] = 0.16F;
 }
 
 void tearDown(void) {}
@@ -75,7 +76,7 @@ void test_the_density_of_three_heights_is_that_of_one_after_the_other(void)
     const float height_m[MIRROR_COUNT] = {0.61F, 0.58F, 0.595F};
     float one_by_one = 1.0F;
 
-    terrain_hypothesis_rise(&h, 1U << FORE, 0.1F);
+    terrain_hypothesis_rise(&h, 1U << FORE, 0.0F, 0.1F);
     const float at_once = terrain_innovation_density(terrain_hypothesis_innovation(&h, height_m), 7U);
     for (uint16_t m = 0U; m < MIRROR_COUNT; m++) {
         one_by_one *= terrain_innovation_density(terrain_hypothesis_innovation(&h, height_m),
@@ -98,16 +99,78 @@ void test_ground_that_is_met_is_as_unsure_as_the_altitude_and_moves_with_it(void
     TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, h.x[TERRAIN_ALTITUDE] - 0.5F, h.x[ground]);
 }
 
-void test_a_ramp_moves_the_grounds_on_it_and_ties_them_to_its_rate(void)
+/* 0.4 m/s for 0.1 s, and 50 mm by the tilt, on a slope of 1. */
+void test_the_ground_on_a_ramp_rises_by_the_slope_times_the_way_of_the_spot(void)
 {
-    terrain_hypothesis_rise(&h, 1U << FORE, 0.1F);
+    const uint16_t ground = terrain_ground_of(FORE);
+
+    h.ramps = 1U << FORE;
+    terrain_hypothesis_rise(&h, 1U << FORE, 0.05F, 0.1F);
     TEST_ASSERT_EQUAL_HEX16(1U << FORE, h.ramps);
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.04F, h.x[terrain_ground_of(FORE)]);
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.016F, h.p[terrain_ground_of(FORE)][TERRAIN_RATE]);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.09F, h.x[ground]);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.09F * 0.16F, h.p[ground][TERRAIN_SLOPE]);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.09F * 0.09F * 0.16F, h.p[ground][ground]);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, h.x[terrain_ground_of((uint16_t)MIRROR_AFT)]);
-    terrain_hypothesis_correct(&h, FORE, 0.54F); /* 20 mm less than the rate told */
-    TEST_ASSERT_TRUE(h.x[TERRAIN_RATE] > 0.5F && h.x[TERRAIN_RATE] < 0.6F);
+    terrain_hypothesis_correct(&h, FORE, 0.49F); /* 20 mm more ground than that */
+    TEST_ASSERT_TRUE(h.x[TERRAIN_SLOPE] > 1.1F && h.x[TERRAIN_SLOPE] < 1.25F);
     TEST_ASSERT_FLOAT_WITHIN(0.003F, 0.6F, h.x[TERRAIN_ALTITUDE]);
+}
+
+void test_one_that_joins_a_ramp_has_been_on_it_for_half_of_the_scan(void)
+{
+    const uint16_t ground = terrain_ground_of(FORE);
+
+    h.p[TERRAIN_SLOPE][TERRAIN_SLOPE] = 0.0F;
+    terrain_hypothesis_rise(&h, 1U << FORE, 0.0F, 0.1F);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.02F, h.x[ground]);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-7F, 0.04F * 0.04F / 12.0F, h.p[ground][ground]);
+}
+
+/* Neither derivative tells it: the mean of both is 0. */
+void test_a_slope_and_a_speed_that_may_both_be_anything_make_a_rise_that_may_be_anything(void)
+{
+    const uint16_t ground = terrain_ground_of(FORE);
+
+    h.ramps = 1U << FORE;
+    h.x[TERRAIN_SLOPE] = h.x[TERRAIN_WAY_SPEED] = 0.0F;
+    h.p[TERRAIN_WAY_SPEED][TERRAIN_WAY_SPEED] = 0.09F;
+    terrain_hypothesis_rise(&h, 1U << FORE, 0.0F, 0.1F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, h.x[ground]);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-7F, 0.16F * 0.09F * 0.01F, h.p[ground][ground]);
+}
+
+/* 0.1 rad nose down for half a minute: 0.98 m/s2 for the 3 s in which the air takes it. */
+void test_the_tilt_tells_the_speed_over_the_ground_and_the_air_takes_it(void)
+{
+    for (int i = 0; i < 300; i++) {
+        terrain_hypothesis_travel(&h, 0.098F, 0.1F);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.05F, 2.94F, h.x[TERRAIN_WAY_SPEED]);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, TERRAIN_WAY_MPS, sqrtf(h.p[TERRAIN_WAY_SPEED][TERRAIN_WAY_SPEED]));
+    for (int i = 0; i < 30; i++) {
+        terrain_hypothesis_travel(&h, 0.0F, 0.1F);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.05F, 2.94F * expf(-1.0F), h.x[TERRAIN_WAY_SPEED]);
+}
+
+void test_grounds_that_are_bound_are_one_and_correct_the_altitude(void)
+{
+    const uint16_t aft = (uint16_t)MIRROR_AFT;
+    const uint16_t ground = terrain_ground_of(FORE);
+
+    h.p[TERRAIN_SLOPE][TERRAIN_SLOPE] = 0.0F;
+    terrain_hypothesis_meet(&h, FORE, 0.38F); /* 0.22 m above the aft one's; on a slope of 1 that is 0.2 m */
+    const terrain_tie_t tie = terrain_hypothesis_tie(&h, FORE, aft, 0.2F);
+
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, -0.02F, tie.off_m);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 1.0e-4F + TERRAIN_OWN_M * TERRAIN_OWN_M + 0.012F * 0.012F,
+                             tie.variance_m2);
+    terrain_hypothesis_bind(&h, &tie);
+    TEST_ASSERT_TRUE(h.x[ground] < 0.213F && h.x[ground] > 0.2F);
+    TEST_ASSERT_TRUE(h.x[TERRAIN_ALTITUDE] < 0.595F);
+    TEST_ASSERT_TRUE(h.p[TERRAIN_ALTITUDE][TERRAIN_ALTITUDE] < 0.7e-4F);
+    const terrain_tie_t start = terrain_hypothesis_tie(&h, FORE, MIRROR_COUNT, 0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(-h.x[ground], start.off_m);
 }
 
 void test_two_that_are_merged_have_the_mean_and_the_spread_of_both(void)
@@ -129,7 +192,7 @@ void test_alike_are_those_with_the_same_mirrors_on_a_ramp_and_the_same_motion(vo
     terrain_hypothesis_t other = h;
 
     TEST_ASSERT_TRUE(terrain_hypothesis_alike(&h, &other));
-    other.x[TERRAIN_RATE] = -0.4F; /* no mirror is on a ramp: its rate means nothing */
+    other.x[TERRAIN_SLOPE] = -0.4F; /* no mirror is on a ramp: its slope means nothing */
     TEST_ASSERT_TRUE(terrain_hypothesis_alike(&h, &other));
     h.ramps = 1U;
     TEST_ASSERT_FALSE(terrain_hypothesis_alike(&h, &other));
