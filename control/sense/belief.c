@@ -325,34 +325,21 @@ float belief_of_honest(const belief_t *belief, uint16_t mirrors, uint16_t count)
     return sum;
 }
 
-float belief_of_no_step(const belief_t *belief)
+belief_motions_t belief_of_motions(const belief_t *belief)
 {
-    float sum = 0.0F;
+    belief_motions_t sums = {.no_step = 0.0F};
 
     for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
-        sum += belief->worlds[k].probability * belief->worlds[k & belief->known].no_step;
+        const belief_world_t *world = &belief->worlds[k & belief->known];
+        const float probability = belief->worlds[k].probability;
+
+        sums.no_step += probability * world->no_step;
+        sums.still += probability * world->still;
+        sums.stands += probability * world->motions[BELIEF_STANDS];
+        sums.held += probability * world->motions[BELIEF_HELD];
+        sums.felt_lies += probability * world->motions[BELIEF_FELT_LIES];
     }
-    return sum;
-}
-
-float belief_of_still(const belief_t *belief)
-{
-    float sum = 0.0F;
-
-    for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
-        sum += belief->worlds[k].probability * belief->worlds[k & belief->known].still;
-    }
-    return sum;
-}
-
-float belief_of_motion(const belief_t *belief, uint16_t kind)
-{
-    float sum = 0.0F;
-
-    for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
-        sum += belief->worlds[k].probability * belief->worlds[k & belief->known].motions[kind];
-    }
-    return sum;
+    return sums;
 }
 
 /* The worlds in which all lie that told something in the latest scan. */

@@ -44,17 +44,16 @@ static inline float belief_of_none(const belief_t *belief, uint16_t mirrors)
     return 1.0F - belief_of_honest(belief, mirrors, 1U);
 }
 
-/* Probability that a mirror is honest, and that in the latest scan the ground did not step under most of the
- * honest ones: then the heights show how the vehicle moved. A vehicle that stands shows no motion: about 0.
- */
-float belief_of_no_step(const belief_t *belief);
+/* Probabilities of what the latest scan came about by. All of them in one pass over the worlds: a scan asks
+ * for each. */
+typedef struct {
+    float no_step; /* a mirror is honest, and the ground did not step under most of the honest ones: then the
+                    * heights show how the vehicle moved. One that stands shows no motion: about 0 */
+    float still;   /* it has not moved since the scan before: stands or hangs, also if the accelerometer lies */
+    float stands, held, felt_lies; /* kinds of motion: BELIEF_STANDS, BELIEF_HELD, BELIEF_FELT_LIES */
+} belief_motions_t;
 
-/* That the vehicle has not moved since the scan before: it stands or hangs, also if the accelerometer lies.
- */
-float belief_of_still(const belief_t *belief);
-
-/* Probability of a kind of motion: BELIEF_STANDS, BELIEF_FELT_LIES. */
-float belief_of_motion(const belief_t *belief, uint16_t kind);
+belief_motions_t belief_of_motions(const belief_t *belief);
 
 /* If all mirrors lie that told something in the latest scan. */
 typedef struct {

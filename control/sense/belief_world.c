@@ -429,10 +429,12 @@ void belief_world_look(belief_scan_t *scan, const belief_mean_t *slant, const be
 
     scan->strange_mps2 = sqrtf(variance(STRANGE_MPS2, undelivered_mps2));
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        scan->slant_off_mm[m] = scan->beams[m].slant_mm - slant[m].mm;
-        scan->height_off_mm[m] = scan->beams[m].height_mm - height[m].mm;
-        scan->slant[m] = density_of_constant(scan->beams[m].slant_mm, slant[m].mm, slant[m].count);
-        scan->height[m] = density_of_constant(scan->beams[m].height_mm, height[m].mm, height[m].count);
+        if (belief_has(scan->told, m)) {
+            scan->slant_off_mm[m] = scan->beams[m].slant_mm - slant[m].mm;
+            scan->height_off_mm[m] = scan->beams[m].height_mm - height[m].mm;
+            scan->slant[m] = density_of_constant(scan->beams[m].slant_mm, slant[m].mm, slant[m].count);
+            scan->height[m] = density_of_constant(scan->beams[m].height_mm, height[m].mm, height[m].count);
+        }
     }
 }
 

@@ -197,11 +197,11 @@ static uint16_t weigh(float weights[MIRROR_COUNT], const mirrors_t *mirrors, con
     return left_out;
 }
 
-/* strange: the scan tells nothing, or was held up, so that nothing is known of the motion that it shows.
- * Numbers go on after 65535 at 1. */
-static void number_ground(mirrors_t *mirrors, bool strange)
+/* no_step: probability that the heights show how the vehicle moved; 0: the scan tells nothing, or was held up,
+ * so that nothing is known of the motion that it shows. Numbers go on after 65535 at 1. */
+static void number_ground(mirrors_t *mirrors, float no_step)
 {
-    if (mirrors->ground == 0U || strange || belief_of_no_step(&mirrors->belief) <= AGREE) {
+    if (mirrors->ground == 0U || no_step <= AGREE) {
         mirrors->ground = (uint16_t)((mirrors->ground < UINT16_MAX) ? mirrors->ground + 1U : 1U);
     }
 }
@@ -232,7 +232,7 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
 
     if (voters == 0U) {
         tell_nothing(mirrors);
-        number_ground(mirrors, true);
+        number_ground(mirrors, 0.0F);
         return false;
     }
     mirrors->unseen_s = 0.0F;
@@ -241,22 +241,20 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     const belief_t *belief = &mirrors->belief;
     const float honest = belief_of_honest(belief, voters, 2U);
     const float none = belief_of_none(belief, voters);
-    const float felt_lies = belief_of_motion(belief, BELIEF_FELT_LIES);
-    const float stands = belief_of_motion(belief, BELIEF_STANDS);
-    const float held = belief_of_motion(belief, BELIEF_HELD);
-    const float moves = 1.0F - stands - felt_lies;
+    const belief_motions_t motions = belief_of_motions(belief);
+    const float moves = 1.0F - motions.stands - motions.felt_lies;
 
     mirrors->agree = honest > AGREE;
-    mirrors->felt_lies = felt_lies > AGREE && (mirrors->felt_may_lie || !belief_has_several(voters));
-    mirrors->felt_may_lie = felt_lies > AGREE;
-    mirrors->stirs = 1.0F - belief_of_still(belief) > AGREE;
+    mirrors->felt_lies = motions.felt_lies > AGREE && (mirrors->felt_may_lie || !belief_has_several(voters));
+    mirrors->felt_may_lie = motions.felt_lies > AGREE;
+    mirrors->stirs = 1.0F - motions.still > AGREE;
     mirrors->moves = moves > AGREE;
-    mirrors->no_effect = held > AGREE;
-    mirrors->unpushed = held + stands > AGREE;
+    mirrors->no_effect = motions.held > AGREE;
+    mirrors->unpushed = motions.held + motions.stands > AGREE;
     mirrors->suspected = none > 1.0F - AGREE;
     mirrors->blind = none > AGREE;
     mirrors->sees = !mirrors->suspected && moves > LIES;
-    number_ground(mirrors, held_up);
+    number_ground(mirrors, held_up ? 0.0F : motions.no_step);
     mirrors->altitude.disagree = honest < 1.0F - LIES;
     return true;
 }

@@ -478,14 +478,14 @@ static float no_step_after(unsigned long seed, uint16_t stepped, float step_mm)
         world.height_mm += world.rate_mm_s * GAP_S;
         scan();
     }
-    return belief_of_no_step(&belief);
+    return belief_of_motions(&belief).no_step;
 }
 
 /* A step under one of three leaves two that show the motion; that one of these has stepped too is not sure to
  * be wrong. */
 void test_that_no_ground_stepped_is_sure_only_while_no_mirror_shows_a_step(void)
 {
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, belief_of_no_step(&belief));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, belief_of_motions(&belief).no_step);
     for (unsigned long seed = 1UL; seed <= 40UL; seed++) {
         TEST_ASSERT_FLOAT_WITHIN(0.005F, 0.995F, no_step_after(seed, 0U, 0.0F));
         TEST_ASSERT_FLOAT_WITHIN(0.05F, 0.94F, no_step_after(seed, 1U, 170.0F));
@@ -501,7 +501,7 @@ void test_heights_that_stand_do_not_show_that_no_ground_stepped(void)
     begin(1UL);
     world.gust_mm_s2 = world.sway_rad = 0.0F;
     hover(60);
-    TEST_ASSERT_FLOAT_WITHIN(0.1F, 0.1F, belief_of_no_step(&belief));
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 0.1F, belief_of_motions(&belief).no_step);
 }
 
 void test_a_scan_in_which_no_mirror_tells_shows_no_ground(void)
@@ -510,7 +510,7 @@ void test_a_scan_in_which_no_mirror_tells_shows_no_ground(void)
 
     TEST_ASSERT_TRUE(no_step_after(1UL, 0U, 0.0F) > 0.5F);
     belief_scan(&belief, nothing, GAP_S, felt);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, belief_of_no_step(&belief));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, belief_of_motions(&belief).no_step);
 }
 
 /* One thing comes before all three mirrors, farther than the ground: these show it a scan before the others.

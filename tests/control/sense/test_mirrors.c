@@ -711,7 +711,7 @@ static float lies_felt_after(float covered_s)
         speed_mps += gained_mps;
         (void)scan(height_mm + noise_mm(), height_mm + noise_mm(), height_mm + noise_mm());
     }
-    return belief_of_motion(&mirrors.belief, BELIEF_FELT_LIES);
+    return belief_of_motions(&mirrors.belief).felt_lies;
 }
 
 void test_an_accelerometer_whose_frames_miss_most_of_the_scans_time_is_not_heard(void)
