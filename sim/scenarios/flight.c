@@ -315,16 +315,14 @@ static void plan_pings(const flight_options_t *options)
 static void refer(void *line)
 {
     const later_line_t *order = line;
-    const bool lands = strcasecmp(order->name, "SETR") != 0;
 
-    metrics_order(&flight.record, order->t_s, lands ? 0.0 : strtod(order->value, NULL));
+    metrics_order(&flight.record, order->t_s, scenario_reference_m(order));
 }
 
 /* The record of the flight hears of another reference when the firmware does. */
 static void plan_reference(const later_line_t *line)
 {
-    if (strcasecmp(line->name, "SETR") == 0 || strcasecmp(line->name, "LAND") == 0 ||
-        strcasecmp(line->name, "STOP") == 0) {
+    if (!isnan(scenario_reference_m(line))) {
         timeline_at(at(line->t_s), refer, (void *)(uintptr_t)line);
     }
 }

@@ -27,7 +27,10 @@ static const char usage[] =
     "                      in place of what the board tells\n"
     "  --patience S        how long the board may take until it has heights (default 40; the scanner waits "
     "10 s)\n\n"
-    "Printed: the metrics, what the loop through the adapters takes, troubles by line, the verdict. The "
+    "A flight that needs a pilot, a battery or another vehicle is refused.\n\n"
+    "Printed: the figures that are known from outside the board (a line names the others), what the loop "
+    "through the\n"
+    "adapters takes, troubles by line, the verdict. The "
     "expectations are the\n"
     "scenario's, widened by what the added delay costs in simulation: each to either side by the most that "
     "its metric changes\n"
@@ -87,6 +90,20 @@ static bool read_option(int option, const char *argument)
     }
 }
 
+/* The airframe is the delivered one, its battery never empties, and no pilot stands beside it. */
+static bool is_played(const char *subject)
+{
+    const scenario_t *scenario = order.scenario;
+
+    if (scenario->plant[0] != NULL) {
+        fprintf(stderr, "plomada hil: %s: sets %.*s, which the world of a real board does not have\n",
+                subject, (int)strcspn(scenario->plant[0], " "), scenario->plant[0]);
+        return false;
+    }
+    return !scenario->field_day ||
+           complain("needs a pilot, whom the world of a real board does not have", subject);
+}
+
 static bool read_scenario(int argc, char **argv)
 {
     if (optind + 1 != argc) {
@@ -97,7 +114,7 @@ static bool read_scenario(int argc, char **argv)
     if (order.scenario == NULL || order.scenario->bench) {
         return complain("no such flight, see `plomada list`", argv[optind]);
     }
-    return true;
+    return is_played(argv[optind]);
 }
 
 static bool read_arguments(int argc, char **argv)
@@ -109,12 +126,27 @@ static bool read_arguments(int argc, char **argv)
            (order.lines.help || read_scenario(argc, argv));
 }
 
+/* What only the firmware knows, or the autopilot. */
+static void name_unmeasured(void)
+{
+    const char *between = "not measured here: ";
+
+    for (int i = 0; i < METRIC_COUNT; i++) {
+        if (!bench_can_judge((metric_t)i)) {
+            printf("%s%s", between, metric_names[i]);
+            between = ", ";
+        }
+    }
+    printf("\n");
+}
+
 static void print_metrics(const bench_flight_t *flight)
 {
     scenario_t plain = *order.scenario;
 
     plain.expectation_count = 0; /* judge() has them, widened by the delay of the adapters */
     figures_print(stdout, &plain, &flight->metrics, bench_can_judge);
+    name_unmeasured();
     if (flight->has_delay) {
         printf("loop: %.1f ms from a scan's last octet to its pulse (95 %%: %.1f; in simulation %.1f)\n",
                flight->delay_ms, flight->delay_most_ms, bench_simulated_delay_ms(order.scenario));
