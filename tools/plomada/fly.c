@@ -37,7 +37,10 @@ static const char usage[] =
     "it: all lines\n"
     "                      of the radio. `plomada log FILE` makes a CSV of it, for `make fit`\n"
     "  --radio FILE        all lines of the radio, and neither of these orders: #LOG answers for minutes\n"
-    "  --json FILE         metrics. - as FILE of --csv or --json is stdout; the table then goes to stderr\n"
+    "  --json FILE         metrics. - as FILE of --csv or --json is stdout; the table then goes to stderr. "
+    "Each file has a\n"
+    "                      name of its own: one for two of these options, or one that is read too, is "
+    "refused\n"
     "  --storage FILE      the chip's flash: what #SAVE has stored there in one run is in force in the next. "
     "Without it the\n"
     "                      storage is blank at power-on. The file is made when there is none\n"
@@ -148,7 +151,7 @@ typedef struct {
     flight_options_t flight;
     const scenario_t *scenario;
     output_t csv, json, log, trace, record;
-    const char *storage_path, *record_dir, *place_path, *limits_path;
+    const char *scenario_path, *vehicle_path, *storage_path, *record_dir, *place_path, *limits_path;
     double cost_scale;
     bool help, height, timing;
 } request_t;
@@ -247,6 +250,7 @@ static bool read_option(request_t *request, int option, const char *argument)
         error = flight_override(&request->flight, argument);
         return error == NULL || complain(error, argument);
     case OPT_VEHICLE:
+        request->vehicle_path = argument;
         error = vehicle_read(&request->flight, argument);
         return error == NULL || complain(error, argument);
     case OPT_TIMING:
@@ -343,6 +347,7 @@ static bool no_such_scenario(const char *name)
 static bool find_scenario(request_t *request, const char *name)
 {
     if (strpbrk(name, "./") != NULL) {
+        request->scenario_path = name;
         request->scenario = scenario_file_read(name);
         return request->scenario != NULL;
     }
@@ -451,21 +456,47 @@ static FILE *reading_matter(const request_t *request)
     return output_is_stdout(&request->csv) || output_is_stdout(&request->json) ? stderr : stdout;
 }
 
-static bool open_record(request_t *request)
+static void name_record(request_t *request)
 {
     static char path[PATH_MAX];
 
-    if (request->record_dir == NULL) {
+    if (request->record_dir != NULL) {
+        snprintf(path, sizeof path, "%s/%s", request->record_dir, RECORDING_NAME);
+        request->record.path = path;
+    }
+}
+
+static bool files_apart(const request_t *request)
+{
+    const output_use_t uses[] = {
+        {"SCENARIO", request->scenario_path, false},
+        {"--vehicle", request->vehicle_path, false},
+        {"--place", request->place_path, false},
+        {"--limits", request->limits_path, false},
+        {"--storage", request->storage_path, true},
+        {"--record", request->record.path, true},
+        {"--csv", request->csv.path, true},
+        {"--json", request->json.path, true},
+        {"--trace", request->trace.path, true},
+        {request->flight.dump ? "--log" : "--radio", request->log.path, true},
+    };
+
+    return output_apart("fly", uses, sizeof uses / sizeof uses[0]);
+}
+
+static bool open_record(request_t *request)
+{
+    const char *path = request->record.path;
+
+    if (path == NULL) {
         return true;
     }
     if (mkdir(request->record_dir, 0777) != 0 && errno != EEXIST) {
         return complain(strerror(errno), request->record_dir);
     }
-    snprintf(path, sizeof path, "%s/%s", request->record_dir, RECORDING_NAME);
     if (access(path, F_OK) == 0) {
         return complain("there is a recording already; another --record DIR, or remove it", path);
     }
-    request->record.path = path;
     return output_open(&request->record);
 }
 
@@ -508,7 +539,9 @@ static int run(request_t *request)
     const char *error;
     bool met, kept;
 
-    if (!load_place(request) || !load_storage(request->storage_path) || !open_outputs(request)) {
+    name_record(request);
+    if (!files_apart(request) || !load_place(request) || !load_storage(request->storage_path) ||
+        !open_outputs(request)) {
         return 2;
     }
     request->flight.costs = measure_begin(request->cost_scale, request->trace.file, request->limits_path);
