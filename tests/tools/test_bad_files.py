@@ -87,6 +87,14 @@ class Files(unittest.TestCase):
                 self.assertFalse((self.dir / "z").exists() or (self.dir / "new").exists())
         self.assertIn(self.plomada("fly", "./own.scenario", "--csv", os.devnull, "--json", os.devnull).returncode, (0, 1))
 
+    def test_a_board_and_its_acceptance_write_no_file_that_they_also_read_or_write(self):
+        (self.dir / "pin.md").write_text("a recording")
+        lines = ("--laser", "l", "--imu", "i", "--xbee", "x")
+        self.apart(self.plomada("board", *lines, "--storage", "pin.md", "--pulses", "pin.md"), ("pin.md", b"a recording"))
+        self.apart(self.plomada("board", *lines, "--bits", "imu=z", "--bits", "laser=z"))
+        self.apart(self.plomada("accept", *lines, "--pulses", "pin.md", "--report", "pin", "--afresh"), ("pin.md", b"a recording"))
+        self.assertFalse((self.dir / "z").exists() or (self.dir / "l").is_symlink())
+
     def test_the_report_on_a_board_is_not_overwritten_by_that_on_the_next(self):
         (self.dir / "board.json").write_text("{}")
         lines = ("accept", "--laser", "/nowhere", "--imu", "/nowhere", "--xbee", "/nowhere", "--report", "board")
