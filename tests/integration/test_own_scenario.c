@@ -51,11 +51,32 @@ void test_a_flight_as_the_file_says(void)
         0,
         fly("# up, and higher\n" FLIGHT
             "name mine\nset LAW EST\nset plant.turbulence 0\nat 6 SETR 0.9 # a step\n"
-            "expect max_error_mm 380 500\nexpect ground_contacts 0 0\nfate succeeds\n",
+            "expect altitude_error_mm 380 500\nexpect max_error_mm 1 60\nexpect ground_contacts 0 0\nfate "
+            "succeeds\n",
             "--seed 4"),
         output);
     TEST_ASSERT_NOT_NULL(strstr(output, "mine, seed 4"));
     TEST_ASSERT_NOT_NULL(strstr(output, "MET: all expectations of mine"));
+}
+
+/* Octet for octet: what is copied must fly. */
+void test_the_scenario_of_the_page_is_met(void)
+{
+    static char page[100000];
+    FILE *file = fopen(PAGES "/campaign.md", "r");
+
+    TEST_ASSERT_NOT_NULL(file);
+    page[fread(page, 1, sizeof page - 1, file)] = '\0';
+    fclose(file);
+    char *text = strstr(page, "like est-60cm-ramp");
+    TEST_ASSERT_NOT_NULL(text);
+    *strstr(text, "```") = '\0';
+    for (int seed = 1; seed <= 3; seed++) {
+        char option[16];
+
+        snprintf(option, sizeof option, "--seed %d", seed);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, fly(text, option), output);
+    }
 }
 
 void test_an_expectation_that_does_not_hold_is_named(void)
@@ -198,7 +219,7 @@ void test_what_is_no_text_is_refused_and_an_editors_mark_is_not(void)
 
 void test_a_line_that_is_typed_at_the_soonest_flies(void)
 {
-    TEST_ASSERT_EQUAL_INT_MESSAGE(0, fly(FLIGHT "at 0.03 SETR 0.9\n", ""), output);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, fly(FLIGHT "at 0.03 SETR 0.9\nexpect max_error_mm 1 100\n", ""), output);
 }
 
 void test_more_than_there_is_room_for_is_refused(void)

@@ -226,6 +226,13 @@ static void refer(void *line)
     metrics_order(&record, order->t_s, scenario_reference_m(order));
 }
 
+/* The scenario's own reference, after one that was ordered before it. */
+static void refer_first(void *unused)
+{
+    (void)unused;
+    metrics_order(&record, METRICS_REFERENCE_S, record.reference_m);
+}
+
 static void landing(void *unused)
 {
     (void)unused;
@@ -247,6 +254,9 @@ static sim_time_t plan(const scenario_t *scenario, unsigned long seed)
         type_at(origin, line->t_s, line->name, line->value);
         if (!isnan(scenario_reference_m(line))) {
             timeline_at(origin + (sim_time_t)(line->t_s * 1e9), refer, (void *)(uintptr_t)line);
+            if (line->t_s < METRICS_REFERENCE_S) {
+                timeline_at(origin + (sim_time_t)(METRICS_REFERENCE_S * 1e9), refer_first, NULL);
+            }
         }
     }
     type_at(origin, scenario->land_s, "SETR", "0");
