@@ -11,6 +11,7 @@ import sys
 import tempfile
 import time
 import unittest
+from pathlib import Path
 
 import bench
 
@@ -64,6 +65,18 @@ class Short(unittest.TestCase):
             done = subprocess.run([PROGRAM, "hil", scenario, "--laser", "a", "--imu", "b", "--xbee", "c"], capture_output=True, text=True, check=False)
             self.assertEqual(done.returncode, 2)
             self.assertRegex(done.stderr, rf"^plomada hil: {scenario}: .*{reason}")
+
+    def test_a_file_of_ones_own_may_stand_for_a_scenario_and_what_is_wrong_in_it_is_told_with_its_line(self):
+        with tempfile.TemporaryDirectory() as directory:
+            own = Path(directory, "own.scenario")
+            for text, reason in (("reference 0.5\nlnd 9\n", ":2: lnd: no such word here"), ("like est-60cm-ramp\nset plant.tau 0.1\n", "sets plant.tau"),
+                                 ("like est-60cm-ramp\nplace block 9 9 1 1 0.1\n", "--laser a: ")):
+                own.write_text(text)
+                done = subprocess.run([PROGRAM, "hil", own, "--laser", "a", "--imu", "b", "--xbee", "c"], cwd=directory, capture_output=True, text=True,
+                                      check=False)
+                self.assertEqual(done.returncode, 2)
+                self.assertIn("plomada hil: ", done.stderr)
+                self.assertIn(reason, done.stderr)
 
     def test_a_recording_of_the_pin_that_cannot_be_read_is_refused(self):
         with bench.Board(PROGRAM) as board:

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "child.h"
+#include "control/parameters.h"
 #include "unity.h"
 
 static char output[100000];
@@ -179,6 +180,9 @@ void test_what_is_wrong_is_told_by_its_line(void)
     refused("at 5 SETR 4\n", ":1: SETR: out of range 0..3 m");
     refused("at soon SETR 1\n", ":1: soon: not a number");
     refused("at 0 SETR 0.9\n", ":1: 0: too early, that line takes until 0.027");
+    refused("at 5 FOO\n", ":1: FOO: no such command");
+    refused("\nat 5 LANDD\n", ":2: LANDD: no such command; did you mean LAND?");
+    refused("at 5 VELKK 8\n", ":1: VELKK: no such command; did you mean VELK?");
     refused("at 5 plant.tau 0.1\n", ":1: plant.tau: a figure of the plant is not typed; set it");
     refused("set SETR 0.9\n", ":1: SETR: is no setting: reference, or at");
     refused("like bench\n", ":1: bench: has no flight to be like");
@@ -192,6 +196,30 @@ void test_what_is_wrong_is_told_by_its_line(void)
     refused("reference 0.5\nland 9\nend 8\n", "end is not after land");
     TEST_ASSERT_EQUAL_INT(2, child_plomada("fly ./no-such-file 2>&1", output, sizeof output));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "./no-such-file: No such file"), output);
+}
+
+/* The firmware lists its commands itself. */
+void test_each_command_of_the_firmware_may_stand_in_a_file_and_no_other(void)
+{
+    static char radio[200000];
+    static char every[20000] = FLIGHT;
+    int commands = 0;
+
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, fly("reference 0.5\nland 60\nend 66\nat 2 HELP\n", "--radio help.txt"),
+                                  output);
+    child_read_file("help.txt", radio, sizeof radio);
+    for (const char *at = radio; (at = strstr(at, "OK HELP #")) != NULL; commands++) {
+        char name[32];
+
+        at += strlen("OK HELP #");
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(at, " "), at);
+        if (parameter_find(name, strlen(name)) == PARAMETER_COUNT) {
+            snprintf(every + strlen(every), sizeof every - strlen(every), "at 17.9 %s%s\n", name,
+                     strcmp(name, "SETR") == 0 ? " 0" : "");
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(PARAMETER_COUNT + 21, commands); /* and as many in scenario_file.c */
+    TEST_ASSERT_NOT_EQUAL_INT_MESSAGE(2, fly(every, ""), output);
 }
 
 static void write_octets(const char *octets, size_t count)

@@ -210,12 +210,13 @@ static void type_event(void *text)
 /* Complete at the board at t_s: ten bits an octet at 9600. */
 static void type_at(sim_time_t origin, double t_s, const char *name, const char *value)
 {
-    char *text = malloc(64);
+    const size_t size = strlen(name) + strlen(value) + 3;
+    char *text = malloc(size);
 
     if (text == NULL) {
         abort();
     }
-    snprintf(text, 64, "#%s %s", name, value);
+    snprintf(text, size, "#%s %s", name, value);
     timeline_at(origin + (sim_time_t)((t_s - (double)(strlen(text) + 1) / 960.0) * 1e9), type_event, text);
 }
 

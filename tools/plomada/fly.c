@@ -348,9 +348,9 @@ static bool no_such_scenario(const char *name)
 
 static bool find_scenario(request_t *request, const char *name)
 {
-    if (strpbrk(name, "./") != NULL) {
+    if (scenario_file_named(name)) {
         request->scenario_path = name;
-        request->scenario = scenario_file_read(name);
+        request->scenario = scenario_file_read("fly", name);
         return request->scenario != NULL;
     }
     request->scenario = scenario_find(name);

@@ -8,6 +8,8 @@
 #include "commands.h"
 #include "figures.h"
 #include "lines.h"
+#include "scenario_file.h"
+#include "sim/scenarios/place_file.h"
 #include "sim/scenarios/seed_course.h"
 #include "sim/scenarios/wires.h"
 #include "terminal.h"
@@ -19,6 +21,7 @@ static const char usage[] =
     "adapters, in real\n"
     "time; the board runs its flight image unchanged and tells its throttle pulse by `#STREAM PULSE`. No "
     "motors, no propellers.\n"
+    "SCENARIO: a name, or a file of your own with a dot or a slash in its name.\n"
     "docs/acceptance.md says how to wire it. `plomada board` is a board to try it on.\n\n"
     "  --seed N            noise and phases (default 1)\n"
     "  --pulses FILE       the pulse as a logic analyser sees it on the pin, by sigrok-cli -O csv into a "
@@ -110,7 +113,12 @@ static bool read_scenario(int argc, char **argv)
         return complain("one SCENARIO is needed, see `plomada list`",
                         optind < argc ? argv[optind + 1] : "hil");
     }
-    order.scenario = scenario_find(argv[optind]);
+    const bool own = scenario_file_named(argv[optind]);
+
+    order.scenario = own ? scenario_file_read("hil", argv[optind]) : scenario_find(argv[optind]);
+    if (own && order.scenario == NULL) {
+        return false; /* said so */
+    }
     if (order.scenario == NULL || order.scenario->bench) {
         return complain("no such flight, see `plomada list`", argv[optind]);
     }
@@ -209,23 +217,30 @@ static int conclude(const bench_flight_t *flight)
     return met && flight->safe ? 0 : 1;
 }
 
+static void lay_place(world_config_t *config)
+{
+    static place_file_t file;
+
+    if (order.scenario->place != NULL) {
+        (void)place_file_read(&file, order.scenario->place, order.seed); /* it was read before */
+    } else {
+        seed_course_lay(order.scenario->platform ? &seed_course_ramp : &seed_course_flat, order.seed,
+                        &file.place, &file.course);
+    }
+    config->place = &file.place;
+    config->course = &file.course;
+}
+
 static int run(void)
 {
     static bench_flight_t flight;
-    static place_t place;
-    static course_t course;
-    world_config_t config = {.seed = order.seed,
-                             .place = &place,
-                             .course = &course,
-                             .quadrotor = quadrotor_default,
-                             .line = terminal_line};
+    world_config_t config = {.seed = order.seed, .quadrotor = quadrotor_default, .line = terminal_line};
     board_wire_t failed;
     const char *error;
 
     memcpy(config.device, order.lines.path, sizeof config.device);
     config.pulses = order.lines.pulses;
-    seed_course_lay(order.scenario->platform ? &seed_course_ramp : &seed_course_flat, order.seed, &place,
-                    &course);
+    lay_place(&config);
     config.quadrotor.tug_rate_per_s = order.scenario->tug_rate_per_s;
     config.quadrotor.climb_rate_mps_per_n = order.scenario->climb_rate_mps_per_n;
     terminal_begin();
