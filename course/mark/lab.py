@@ -58,6 +58,9 @@ def main():
         parser.error(f"no file {path}")
     if path.suffix != shipped(options.number).suffix:
         parser.error(f"{path.name}: laboratory {options.number} wants a {shipped(options.number).suffix} file")
+    program = options.marker if path.suffix == ".c" else options.plomada
+    if not program.is_file():
+        parser.error(f"{program}: not there; `make lab N={options.number}` builds it")
     lines, _ = report(options.number, options.id, path, options.plomada.resolve(), options.marker.resolve())
     print("\n".join(lines))
 

@@ -46,6 +46,7 @@ static struct {
     uint32_t shown_scan;
     unsigned pings;
     double ping_every_s;
+    bool by_hand; /* people order, and nobody has planned what and when */
 } flight;
 
 /* Both texts stand until the next call. */
@@ -315,17 +316,25 @@ static void plan_pings(const flight_options_t *options)
 static void refer(void *line)
 {
     const later_line_t *order = line;
-    const bool lands = strcasecmp(order->name, "SETR") != 0;
 
-    metrics_order(&flight.record, order->t_s, lands ? 0.0 : strtod(order->value, NULL));
+    metrics_order(&flight.record, order->t_s, scenario_reference_m(order));
+}
+
+/* The scenario's own reference, after one that was ordered before it. */
+static void refer_first(void *context)
+{
+    (void)context;
+    metrics_order(&flight.record, METRICS_REFERENCE_S, flight.record.reference_m);
 }
 
 /* The record of the flight hears of another reference when the firmware does. */
 static void plan_reference(const later_line_t *line)
 {
-    if (strcasecmp(line->name, "SETR") == 0 || strcasecmp(line->name, "LAND") == 0 ||
-        strcasecmp(line->name, "STOP") == 0) {
+    if (!isnan(scenario_reference_m(line))) {
         timeline_at(at(line->t_s), refer, (void *)(uintptr_t)line);
+        if (line->t_s < METRICS_REFERENCE_S) {
+            timeline_at(at(METRICS_REFERENCE_S), refer_first, NULL);
+        }
     }
 }
 
@@ -513,12 +522,25 @@ static metrics_sample_t look(double t_s, const quadrotor_state_t *truth)
                               .altitude_m = truth->altitude_m};
 }
 
+/* Nobody planned when people order what: the firmware says what is in force. */
+static void hear_reference(double t_s)
+{
+    const double reference_m = (double)firmware_view().flight.reference_m;
+
+    if (reference_m != flight.record.wanted_m) {
+        metrics_order(&flight.record, t_s, reference_m);
+    }
+}
+
 static void sample(FILE *csv)
 {
     const quadrotor_state_t *state = quadrotor_state(board_quadrotor());
     double t_s = (double)(timeline_now() - flight.origin) * 1e-9;
     const metrics_sample_t seen = look(t_s, state);
 
+    if (flight.by_hand) {
+        hear_reference(t_s);
+    }
     metrics_add(&flight.record, &seen);
     const tape_truth_t truth = {.height_m = state->height_m,
                                 .altitude_m = state->altitude_m,
@@ -727,6 +749,9 @@ static void conclude(flight_result_t *result)
     value[METRIC_SCANS_REJECTED] = (double)firmware_view().damages + firmware_view().altitude.heightless;
     value[METRIC_COMMANDS_OK] = flight.ok;
     value[METRIC_COMMANDS_ERR] = flight.err;
+    for (int i = 0; i < METRIC_COUNT && flight.by_hand; i++) {
+        value[i] = metrics_needs_plan((metric_t)i) ? NAN : value[i];
+    }
     result->halt = kernel_halt_reason();
 }
 
@@ -789,6 +814,10 @@ bool flight_run(const scenario_t *scenario, const flight_options_t *options, fli
         return false;
     }
     configure(scenario, options);
+    flight.by_hand = options->realtime && !scenario->bench;
+    if (flight.by_hand) {
+        metrics_begin(&flight.record, 0.0, false, INFINITY);
+    }
     power_on(scenario, options);
     if (options->csv != NULL) {
         write_titles(options->csv);

@@ -46,9 +46,9 @@ typedef struct {
 } flight_options_t;
 
 typedef struct {
-    metrics_t metrics;
-    const char *halt; /* why the firmware stopped, or NULL */
-    bool started;     /* the scanner came up and the reference was sent */
+    metrics_t metrics; /* of a flight in real time those that need no plan, by the references in force */
+    const char *halt;  /* why the firmware stopped, or NULL */
+    bool started;      /* the scanner came up and the reference was sent */
 } flight_result_t;
 
 /* What is wrong with this value of a telecommand parameter, of SETR or of a plant figure; NULL when nothing

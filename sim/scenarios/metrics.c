@@ -5,6 +5,7 @@
 
 #define OVERSHOOT_END_S 5.5
 #define SETTLED_S 5.0
+#define CHANGED_S 5.0 /* after another reference: as long as from the first one to the hover at 6 s */
 #define WITHIN_MM 50.0
 #define SETTLED_FOR_S 0.5
 #define MAX_ERROR_START_S 6.0
@@ -75,15 +76,26 @@ static bool hovering(const metrics_record_t *record, double t_s)
     return t_s >= 6.0 && t_s <= record->land_s;
 }
 
+/* From the reference in force. */
 static double error_mm(const metrics_record_t *record, const metrics_sample_t *s)
 {
-    return (s->height_m - record->reference_m) * 1000.0;
+    return (s->height_m - record->wanted_m) * 1000.0;
+}
+
+/* There is a reference, and the vehicle is not on its way from another one. The first one has windows of its
+ * own. */
+static bool settled(const metrics_record_t *record, const metrics_sample_t *s)
+{
+    return record->wanted_m > 0.0 && !(s->t_s < record->changed_s + CHANGED_S);
 }
 
 static void judge_course(metrics_record_t *record, const metrics_sample_t *s)
 {
-    const double error_m = s->height_m - record->reference_m;
+    const double error_m = s->height_m - record->wanted_m;
 
+    if (!settled(record, s)) {
+        return;
+    }
     if (!record->off_course && error_m > 1.0) {
         record->too_high = true;
     }
@@ -113,7 +125,7 @@ static void find_extremes(metrics_record_t *record, const metrics_sample_t *s)
         record->highest_mm = fmax(record->highest_mm, (s->height_m - record->highest_wanted_m) * 1000.0);
     }
     if (s->t_s >= MAX_ERROR_START_S && s->t_s <= record->land_s) {
-        record->largest_mm = fmax(record->largest_mm, fabs(off_mm));
+        record->largest_mm = settled(record, s) ? fmax(record->largest_mm, fabs(off_mm)) : record->largest_mm;
         record->altitude_mm = fmax(record->altitude_mm, fabs(s->altitude_m - record->wanted_m) * 1000.0);
     }
 }
@@ -265,7 +277,17 @@ static void watch_reference(metrics_record_t *record, const metrics_sample_t *s)
     record->aside_s = fmax(record->aside_s, s->t_s - record->aside_since_s);
 }
 
-static void gather(metrics_record_t *record, const metrics_sample_t *s)
+/* The platform's edge. */
+static void watch_recovery(metrics_record_t *record, double t_s, double off_mm)
+{
+    record->edge_seen = true;
+    record->undershoot_mm = fmax(record->undershoot_mm, -off_mm);
+    record->last_off_s = fabs(off_mm) > WITHIN_MM ? t_s : record->last_off_s;
+    record->unsettled_s = t_s < record->unsettled_s + SETTLED_FOR_S ? record->last_off_s
+                                                                    : record->unsettled_s;
+}
+
+static void gather_settled(metrics_record_t *record, const metrics_sample_t *s)
 {
     const double t = s->t_s, off_mm = error_mm(record, s);
 
@@ -279,18 +301,30 @@ static void gather(metrics_record_t *record, const metrics_sample_t *s)
     if (t >= 7.2 && t <= METRICS_RECOVERY_END_S) {
         add(&record->ramp, off_mm);
     }
-    if (record->field_day && t >= AGAIN_START_S && t <= AGAIN_END_S) {
+    if (t >= METRICS_EDGE_S && t <= METRICS_RECOVERY_END_S) {
+        watch_recovery(record, t, off_mm);
+    }
+}
+
+/* Its second take-off is to the first reference, and its pilot keeps that. */
+static void gather_field_day(metrics_record_t *record, const metrics_sample_t *s)
+{
+    const double off_mm = (s->height_m - record->reference_m) * 1000.0;
+
+    if (record->field_day && s->t_s >= AGAIN_START_S && s->t_s <= AGAIN_END_S) {
         add(&record->again, off_mm);
     }
-    if (record->field_day && t >= BY_EYE_START_S && t <= BY_EYE_END_S) {
+    if (record->field_day && s->t_s >= BY_EYE_START_S && s->t_s <= BY_EYE_END_S) {
         add(&record->by_eye, off_mm);
     }
-    if (t >= METRICS_EDGE_S && t <= METRICS_RECOVERY_END_S) {
-        record->undershoot_mm = fmax(record->undershoot_mm, -off_mm);
-        record->last_off_s = fabs(off_mm) > WITHIN_MM ? t : record->last_off_s;
-        record->unsettled_s = t < record->unsettled_s + SETTLED_FOR_S ? record->last_off_s
-                                                                      : record->unsettled_s;
+}
+
+static void gather(metrics_record_t *record, const metrics_sample_t *s)
+{
+    if (settled(record, s)) {
+        gather_settled(record, s);
     }
+    gather_field_day(record, s);
 }
 
 void metrics_begin(metrics_record_t *record, double reference_m, bool terrain, double land_s)
@@ -299,6 +333,8 @@ void metrics_begin(metrics_record_t *record, double reference_m, bool terrain, d
                                  .wanted_m = reference_m,
                                  .highest_wanted_m = reference_m,
                                  .ordered_s = METRICS_REFERENCE_S,
+                                 .changed_s = -INFINITY,
+                                 .largest_mm = NAN,
                                  .stood_since_s = -INFINITY,
                                  .aside_since_s = -INFINITY,
                                  .terrain = terrain,
@@ -318,6 +354,9 @@ void metrics_begin(metrics_record_t *record, double reference_m, bool terrain, d
 
 void metrics_order(metrics_record_t *record, double t_s, double reference_m)
 {
+    if (reference_m != record->wanted_m && t_s > METRICS_REFERENCE_S) {
+        record->changed_s = t_s;
+    }
     record->lowered = reference_m < record->wanted_m;
     record->wanted_m = reference_m;
     record->highest_wanted_m = fmax(record->highest_wanted_m, reference_m);
@@ -367,6 +406,12 @@ static double after_order(const metrics_record_t *record, double last_s)
     return over ? fmax(last_s - record->order_s, 0.0) : NAN;
 }
 
+/* It was not on its way to another reference there. */
+static bool knows_edge(const metrics_record_t *record)
+{
+    return record->terrain && (record->edge_seen || isinf(record->changed_s));
+}
+
 void metrics_compute(const metrics_record_t *record, metrics_t *metrics)
 {
     double *value = metrics->value;
@@ -378,9 +423,9 @@ void metrics_compute(const metrics_record_t *record, metrics_t *metrics)
     value[METRIC_HOVER_MEAN_ERROR_MM] = mean(&record->hover);
     value[METRIC_THRUST_STD_N] = deviation(&record->thrust);
     value[METRIC_TERRAIN_RMS_MM] = record->terrain ? rms(&record->ramp) : NAN;
-    value[METRIC_RECOVERY_S] = record->terrain ? record->last_off_s - METRICS_EDGE_S : NAN;
-    value[METRIC_SETTLED_S] = record->terrain ? record->unsettled_s - METRICS_EDGE_S : NAN;
-    value[METRIC_UNDERSHOOT_MM] = record->terrain ? record->undershoot_mm : NAN;
+    value[METRIC_RECOVERY_S] = knows_edge(record) ? record->last_off_s - METRICS_EDGE_S : NAN;
+    value[METRIC_SETTLED_S] = knows_edge(record) ? record->unsettled_s - METRICS_EDGE_S : NAN;
+    value[METRIC_UNDERSHOOT_MM] = knows_edge(record) ? record->undershoot_mm : NAN;
     value[METRIC_TOUCH_SPEED_MPS] = record->hardest_mps;
     value[METRIC_HIGHEST_MM] = isfinite(record->highest_mm) ? record->highest_mm : NAN;
     value[METRIC_MAX_ERROR_MM] = record->largest_mm;
@@ -401,4 +446,25 @@ void metrics_compute(const metrics_record_t *record, metrics_t *metrics)
     value[METRIC_OFF_S] = record->aside_s;
     value[METRIC_ALOFT_S] = record->in_air_s;
     judge(record, metrics);
+}
+
+bool metrics_needs_plan(metric_t metric)
+{
+    switch (metric) {
+    case METRIC_RISE_TIME_S:
+    case METRIC_OVERSHOOT_MM:
+    case METRIC_TERRAIN_RMS_MM:
+    case METRIC_RECOVERY_S:
+    case METRIC_SETTLED_S:
+    case METRIC_UNDERSHOOT_MM:
+    case METRIC_GROUND_CONTACTS:
+    case METRIC_ALTITUDE_ERROR_MM:
+    case METRIC_DOWN_S:
+    case METRIC_STOPPED_S:
+    case METRIC_AGAIN_RMS_MM:
+    case METRIC_BY_EYE_RMS_MM:
+        return true;
+    default:
+        return false;
+    }
 }

@@ -1,5 +1,9 @@
 /* What a flight was like: figures of the true height, from 100 Hz samples in scenario time (t = 1.0 s: #SETR
- * complete at the receiver). */
+ * complete at the receiver).
+ *
+ * "reference" is the one in force. For 5 s after another one was ordered, and without one, the vehicle is on
+ * its way: such samples count neither in the windows of overshoot, hover, terrain and recovery, nor in the
+ * largest error, nor in `failed`. */
 #ifndef SIM_SCENARIOS_METRICS_H
 #define SIM_SCENARIOS_METRICS_H
 
@@ -34,7 +38,7 @@ typedef struct {
 } metrics_sample_t;
 
 typedef enum {
-    METRIC_RISE_TIME_S,  /* 10 to 90 % of the reference */
+    METRIC_RISE_TIME_S,  /* 10 to 90 % of the first reference */
     METRIC_OVERSHOOT_MM, /* highest above the reference, 1-5.5 s, at least 0 */
     METRIC_HOVER_RMS_MM, /* of height - reference over the hover windows */
     METRIC_HOVER_MEAN_ERROR_MM,
@@ -50,8 +54,9 @@ typedef enum {
     METRIC_SCANS_REJECTED,
     METRIC_COMMANDS_OK,
     METRIC_COMMANDS_ERR,
-    METRIC_MAX_ERROR_MM,      /* largest |height - reference|, 6 s to the landing command */
-    METRIC_ALTITUDE_ERROR_MM, /* largest |altitude above the floor - reference in force|, likewise */
+    METRIC_MAX_ERROR_MM, /* largest |height - reference|, 6 s to the landing command; NAN: always on its way
+                          */
+    METRIC_ALTITUDE_ERROR_MM, /* largest |altitude above the floor - reference|, likewise, on its way too */
     METRIC_HIGHEST_MM, /* above the highest reference ordered so far, from the first one to the end of the
                           flight */
     METRIC_TOUCH_SPEED_MPS, /* hardest touch: fastest fall within the last 30 mm; NAN when it never came down
@@ -66,7 +71,7 @@ typedef enum {
     METRIC_DECEIVED_S, /* longest time for which the height that the law acts on was wrong by more than 0.3 m
                         * in the air without a flag */
     METRIC_FLAGGED_S,  /* time with a flag in the air, before the landing command */
-    METRIC_AGAIN_RMS_MM,     /* of height - reference, 5 to 8 s after the field day's second take-off */
+    METRIC_AGAIN_RMS_MM,     /* of height - first reference, 5 to 8 s after the field day's second take-off */
     METRIC_BY_EYE_RMS_MM,    /* likewise while its pilot holds the height */
     METRIC_MOTOR_STOPS,      /* times that the autopilot stopped the motors in the air */
     METRIC_MOTORS_AT_END,    /* 1: they still run */
@@ -99,7 +104,7 @@ typedef struct {
 } metrics_moments_t;
 
 typedef struct {
-    double reference_m;
+    double reference_m; /* the first one */
     bool terrain;   /* ramp and platform: hover is 4.5-7.2 s and 15-20 s; flat ground: 6 s to the landing */
     double land_s;  /* the landing command */
     bool field_day; /* set behind metrics_begin() */
@@ -109,6 +114,7 @@ typedef struct {
     double tenth_s, ninety_s; /* first time at 10 and 90 % of the reference; NAN: not yet */
     double overshoot_mm, undershoot_mm, last_off_s;
     double unsettled_s; /* last_off_s before half a second within */
+    bool edge_seen;     /* a sample counted behind it */
     double largest_mm, altitude_mm, highest_mm;
     bool dropped; /* it stood without thrust on a platform that went away */
     double fall_mps, hardest_mps;
@@ -117,6 +123,7 @@ typedef struct {
     double aloft_since_s; /* above 30 mm without a break; NAN: not */
     double off_since_s, wrong_since_s, deceived_s, flagged_s;
     double wanted_m, highest_wanted_m, ordered_s; /* the reference in force, and since when */
+    double changed_s;                             /* since when it is another one than before */
     bool lowered;                                 /* it is lower than the one before */
     bool reached, flew;                           /* that reference; off the ground by it */
     double stood_since_s, landed_unordered;
@@ -136,6 +143,10 @@ void metrics_add(metrics_record_t *record, const metrics_sample_t *sample);
 /* After the landing command or a descent by the supervisor: on the ground, with the motors off, for a second.
  */
 bool metrics_over(const metrics_record_t *record);
+
+/* Whether the figure says something only of a flight whose orders and times were planned, and of none that
+ * people fly: its window, or its beginning, is of the plan. */
+bool metrics_needs_plan(metric_t metric);
 
 /* Fills everything that follows from the samples; the counters are left at 0. */
 void metrics_compute(const metrics_record_t *record, metrics_t *metrics);

@@ -2,7 +2,9 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #define FLOWN_PID \
     "LAW PID", "LAYOUT FRONT", "RELEASE FREE", "KP 0.015", "KD 0.008", "KI 0.01", "USAT 1", "DSAT 0", "GRAV 7"
@@ -361,6 +363,14 @@ const scenario_t *scenario_find(const char *name)
         }
     }
     return NULL;
+}
+
+double scenario_reference_m(const later_line_t *line)
+{
+    if (strcasecmp(line->name, "SETR") == 0) {
+        return strtod(line->value, NULL);
+    }
+    return strcasecmp(line->name, "LAND") == 0 || strcasecmp(line->name, "STOP") == 0 ? 0.0 : NAN;
 }
 
 bool scenario_met(const scenario_t *scenario, const metrics_t *metrics, const expectation_t **broken)

@@ -55,6 +55,9 @@ extern const int scenario_count;
 /* NULL when there is none of that name. */
 const scenario_t *scenario_find(const char *name);
 
+/* The reference that this line puts in force; 0: it lands, or takes the vehicle from the law. NAN: none. */
+double scenario_reference_m(const later_line_t *line);
+
 /* True when every expectation holds; otherwise the first broken one is returned through *broken. */
 bool scenario_met(const scenario_t *scenario, const metrics_t *metrics, const expectation_t **broken);
 

@@ -11,6 +11,7 @@ import sys
 import tempfile
 import time
 import unittest
+from pathlib import Path
 
 import bench
 
@@ -35,6 +36,17 @@ class Short(unittest.TestCase):
         self.assertNotIn("late:", output)
         loop_ms, simulated_ms = map(float, re.search(r"loop: (\d+\.\d) ms from a scan's last octet to its pulse \(.*in simulation (\d+\.\d)\)", output).groups())
         self.assertAlmostEqual(loop_ms, simulated_ms, delta=CYCLE_TENTH_MS)
+        self.tells_what_it_measures_and_no_more(output)
+
+    def tells_what_it_measures_and_no_more(self, output):
+        found, simulated = bench.metrics(output), bench.virtual(PROGRAM, "est-60cm-ramp")
+        self.assertAlmostEqual(found["aloft_s"], simulated["aloft_s"], delta=0.5)
+        self.assertAlmostEqual(found["touch_speed_mps"], simulated["touch_speed_mps"], delta=0.2)
+        self.assertEqual((found["cuts"], found["landed_unordered"]), (0, 0))
+        unmeasured = re.search(r"(?m)^not measured here: (.*)$", output).group(1).split(", ")
+        for name in ("sight_doubts", "imu_doubts", "thrust_doubts", "deceived_s", "flagged_s", "takeovers"):
+            self.assertIn(name, unmeasured)
+        self.assertFalse(set(unmeasured) & set(found), output)
 
     def test_a_radio_that_is_wired_the_wrong_way_round_is_named(self):
         status, output = bench.hil(PROGRAM, "hover-60s", ["xbee-swapped"], patience=3)
@@ -47,6 +59,24 @@ class Short(unittest.TestCase):
         for words in (["est-60cm-ramp", "--laser", "/nowhere", "--imu", "/nowhere", "--xbee", "/nowhere"], ["bench"], ["est-60cm-ramp"],
                       ["no-such-flight", "--laser", "a", "--imu", "b", "--xbee", "c"]):
             self.assertEqual(subprocess.run([PROGRAM, "hil", *words], capture_output=True, check=False).returncode, 2, words)
+
+    def test_a_flight_that_needs_what_this_world_does_not_have_is_refused_and_says_what(self):
+        for scenario, reason in (("battery", "sets plant.battery"), ("field-day", "needs a pilot"), ("stick", "plant.stick")):
+            done = subprocess.run([PROGRAM, "hil", scenario, "--laser", "a", "--imu", "b", "--xbee", "c"], capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 2)
+            self.assertRegex(done.stderr, rf"^plomada hil: {scenario}: .*{reason}")
+
+    def test_a_file_of_ones_own_may_stand_for_a_scenario_and_what_is_wrong_in_it_is_told_with_its_line(self):
+        with tempfile.TemporaryDirectory() as directory:
+            own = Path(directory, "own.scenario")
+            for text, reason in (("reference 0.5\nlnd 9\n", ":2: lnd: no such word here"), ("like est-60cm-ramp\nset plant.tau 0.1\n", "sets plant.tau"),
+                                 ("like est-60cm-ramp\nplace block 9 9 1 1 0.1\n", "--laser a: ")):
+                own.write_text(text)
+                done = subprocess.run([PROGRAM, "hil", own, "--laser", "a", "--imu", "b", "--xbee", "c"], cwd=directory, capture_output=True, text=True,
+                                      check=False)
+                self.assertEqual(done.returncode, 2)
+                self.assertIn("plomada hil: ", done.stderr)
+                self.assertIn(reason, done.stderr)
 
     def test_a_recording_of_the_pin_that_cannot_be_read_is_refused(self):
         with bench.Board(PROGRAM) as board:

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "child.h"
+#include "control/parameters.h"
 #include "unity.h"
 
 static char output[100000];
@@ -51,11 +52,32 @@ void test_a_flight_as_the_file_says(void)
         0,
         fly("# up, and higher\n" FLIGHT
             "name mine\nset LAW EST\nset plant.turbulence 0\nat 6 SETR 0.9 # a step\n"
-            "expect max_error_mm 380 500\nexpect ground_contacts 0 0\nfate succeeds\n",
+            "expect altitude_error_mm 380 500\nexpect max_error_mm 1 60\nexpect ground_contacts 0 0\nfate "
+            "succeeds\n",
             "--seed 4"),
         output);
     TEST_ASSERT_NOT_NULL(strstr(output, "mine, seed 4"));
     TEST_ASSERT_NOT_NULL(strstr(output, "MET: all expectations of mine"));
+}
+
+/* Octet for octet: what is copied must fly. */
+void test_the_scenario_of_the_page_is_met(void)
+{
+    static char page[100000];
+    FILE *file = fopen(PAGES "/campaign.md", "r");
+
+    TEST_ASSERT_NOT_NULL(file);
+    page[fread(page, 1, sizeof page - 1, file)] = '\0';
+    fclose(file);
+    char *text = strstr(page, "like est-60cm-ramp");
+    TEST_ASSERT_NOT_NULL(text);
+    *strstr(text, "```") = '\0';
+    for (int seed = 1; seed <= 3; seed++) {
+        char option[16];
+
+        snprintf(option, sizeof option, "--seed %d", seed);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, fly(text, option), output);
+    }
 }
 
 void test_an_expectation_that_does_not_hold_is_named(void)
@@ -158,6 +180,9 @@ void test_what_is_wrong_is_told_by_its_line(void)
     refused("at 5 SETR 4\n", ":1: SETR: out of range 0..3 m");
     refused("at soon SETR 1\n", ":1: soon: not a number");
     refused("at 0 SETR 0.9\n", ":1: 0: too early, that line takes until 0.027");
+    refused("at 5 FOO\n", ":1: FOO: no such command");
+    refused("\nat 5 LANDD\n", ":2: LANDD: no such command; did you mean LAND?");
+    refused("at 5 VELKK 8\n", ":1: VELKK: no such command; did you mean VELK?");
     refused("at 5 plant.tau 0.1\n", ":1: plant.tau: a figure of the plant is not typed; set it");
     refused("set SETR 0.9\n", ":1: SETR: is no setting: reference, or at");
     refused("like bench\n", ":1: bench: has no flight to be like");
@@ -171,6 +196,30 @@ void test_what_is_wrong_is_told_by_its_line(void)
     refused("reference 0.5\nland 9\nend 8\n", "end is not after land");
     TEST_ASSERT_EQUAL_INT(2, child_plomada("fly ./no-such-file 2>&1", output, sizeof output));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "./no-such-file: No such file"), output);
+}
+
+/* The firmware lists its commands itself. */
+void test_each_command_of_the_firmware_may_stand_in_a_file_and_no_other(void)
+{
+    static char radio[200000];
+    static char every[20000] = FLIGHT;
+    int commands = 0;
+
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, fly("reference 0.5\nland 60\nend 66\nat 2 HELP\n", "--radio help.txt"),
+                                  output);
+    child_read_file("help.txt", radio, sizeof radio);
+    for (const char *at = radio; (at = strstr(at, "OK HELP #")) != NULL; commands++) {
+        char name[32];
+
+        at += strlen("OK HELP #");
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(at, " "), at);
+        if (parameter_find(name, strlen(name)) == PARAMETER_COUNT) {
+            snprintf(every + strlen(every), sizeof every - strlen(every), "at 17.9 %s%s\n", name,
+                     strcmp(name, "SETR") == 0 ? " 0" : "");
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(PARAMETER_COUNT + 21, commands); /* and as many in scenario_file.c */
+    TEST_ASSERT_NOT_EQUAL_INT_MESSAGE(2, fly(every, ""), output);
 }
 
 static void write_octets(const char *octets, size_t count)
@@ -198,7 +247,7 @@ void test_what_is_no_text_is_refused_and_an_editors_mark_is_not(void)
 
 void test_a_line_that_is_typed_at_the_soonest_flies(void)
 {
-    TEST_ASSERT_EQUAL_INT_MESSAGE(0, fly(FLIGHT "at 0.03 SETR 0.9\n", ""), output);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, fly(FLIGHT "at 0.03 SETR 0.9\nexpect max_error_mm 1 100\n", ""), output);
 }
 
 void test_more_than_there_is_room_for_is_refused(void)

@@ -144,6 +144,32 @@ static void end_by(int signal_number)
     TEST_ASSERT_EQUAL_INT(0, WEXITSTATUS(status));
 }
 
+/* docs/first_evening.md. Nobody but who types has ordered anything. */
+void test_a_flight_by_hand_is_told_by_the_reference_that_was_typed(void)
+{
+    static char told[4000];
+    int fd;
+
+    start("60");
+    fd = open_radio();
+    TEST_ASSERT_TRUE(hears(fd, "laser:OK", 20000));
+    TEST_ASSERT_TRUE(answers(fd, "#ARM\n", "OK ARM"));
+    TEST_ASSERT_TRUE(answers(fd, "#SETR 0.5\n", "OK SETR 0.5"));
+    TEST_ASSERT_FALSE(hears(fd, "no such line", 7000));
+    TEST_ASSERT_TRUE(answers(fd, "#LAND\n", "OK LAND"));
+    TEST_ASSERT_TRUE(hears(fd, "state:GROUND", 10000));
+    TEST_ASSERT_FALSE(hears(fd, "no such line", 2000));
+    end_by(SIGINT);
+    told[fread(told, 1, sizeof told - 1, program)] = '\0';
+    close(fd);
+    TEST_ASSERT_NULL_MESSAGE(strstr(told, "\n!"), told);
+    TEST_ASSERT_NULL_MESSAGE(strstr(told, "rise_time_s"), told);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(told, "Not judged: the scenario ordered nothing"), told);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(told, "\n  landed_unordered     0 "), told);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(told, "\n  max_error_mm"), told);
+    TEST_ASSERT_TRUE_MESSAGE(atof(strstr(told, "\n  max_error_mm") + 23) < 100.0, told);
+}
+
 static void save_kp(const char *line, int signal_number)
 {
     int fd;

@@ -89,6 +89,9 @@ def main():
     parser.add_argument("--show", metavar="LAW", help="print the cycle of that law with most returns")
     options = parser.parse_args()
     the_house = house.House(options.root)
+    laws = LAW.findall(the_house.text("control/laws/table.h"))
+    if options.show and options.show not in laws:
+        parser.error(f"{options.show}: no such law; one of {', '.join(laws)}")
     with tempfile.TemporaryDirectory() as work:
         cycles = flown(the_house, options.compiler, options.addr2line, work)
     counts = changing(the_house)

@@ -54,6 +54,47 @@ class Files(unittest.TestCase):
         self.assertEqual((self.dir / "run/flight.plomada").read_bytes(), before)
         self.assertFalse((self.dir / "not-begun.csv").exists())
 
+    def apart(self, done, *files):
+        """Refused as one file that was given twice; nothing in it has changed."""
+        self.refused(done, "are one file")
+        for file, octets in files:
+            self.assertEqual((self.dir / file).read_bytes(), octets)
+
+    def test_a_replay_never_writes_over_what_it_reads(self):
+        (self.dir / "a-link.csv").unlink(missing_ok=True)
+        (self.dir / "a-link.csv").symlink_to("flown.csv")
+        log, record = ("flown.csv", (self.dir / "flown.csv").read_bytes()), ("run/flight.plomada", (self.dir / "run/flight.plomada").read_bytes())
+        for name in ("flown.csv", "./flown.csv", "a-link.csv", str(self.dir / "flown.csv")):
+            self.apart(self.plomada("replay", "flown.csv", "--csv", name), log)
+        for name in ("run", "run/flight.plomada"):
+            self.apart(self.plomada("replay", name, "--csv", "run/flight.plomada"), record)
+        with open(self.dir / "flown.csv", "a", encoding="utf-8") as same:
+            self.apart(self.plomada("replay", "flown.csv", stdout=same), log)
+
+    def test_a_flight_never_writes_over_what_it_reads(self):
+        (self.dir / "vehicle.json").write_text('{"plant.gain": {"value": 1}}')
+        (self.dir / "a.place").write_text("block 9 9 1 1 0.1\n")
+        for option, file in (("--vehicle", "vehicle.json"), ("--place", "a.place")):
+            before = (self.dir / file).read_bytes()
+            self.apart(self.plomada("fly", "./own.scenario", option, file, "--json", file), (file, before))
+        self.apart(self.plomada("fly", "./own.scenario", "--csv", "own.scenario"), ("own.scenario", FLIGHT.encode()))
+
+    def test_one_file_for_two_outputs_of_a_flight_is_refused_before_it_is_made(self):
+        for words in (("--csv", "z", "--json", "z"), ("--csv", "z", "--radio", "./z"), ("--log", "z", "--trace", str(self.dir / "z")),
+                      ("--storage", "z", "--csv", "z"), ("--record", "new", "--csv", "new/flight.plomada"), ("--csv", "-", "--json", "-")):
+            with self.subTest(words):
+                self.apart(self.plomada("fly", "./own.scenario", *words))
+                self.assertFalse((self.dir / "z").exists() or (self.dir / "new").exists())
+        self.assertIn(self.plomada("fly", "./own.scenario", "--csv", os.devnull, "--json", os.devnull).returncode, (0, 1))
+
+    def test_a_board_and_its_acceptance_write_no_file_that_they_also_read_or_write(self):
+        (self.dir / "pin.md").write_text("a recording")
+        lines = ("--laser", "l", "--imu", "i", "--xbee", "x")
+        self.apart(self.plomada("board", *lines, "--storage", "pin.md", "--pulses", "pin.md"), ("pin.md", b"a recording"))
+        self.apart(self.plomada("board", *lines, "--bits", "imu=z", "--bits", "laser=z"))
+        self.apart(self.plomada("accept", *lines, "--pulses", "pin.md", "--report", "pin", "--afresh"), ("pin.md", b"a recording"))
+        self.assertFalse((self.dir / "z").exists() or (self.dir / "l").is_symlink())
+
     def test_the_report_on_a_board_is_not_overwritten_by_that_on_the_next(self):
         (self.dir / "board.json").write_text("{}")
         lines = ("accept", "--laser", "/nowhere", "--imu", "/nowhere", "--xbee", "/nowhere", "--report", "board")

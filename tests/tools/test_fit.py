@@ -39,7 +39,7 @@ class Fit(unittest.TestCase):
         # A log that is asked for before the vehicle is down goes on, and its oldest row may be overwritten meanwhile.
         subprocess.run([PROGRAM, "fly", scenario, "--seed", str(seed), "--until-down", "20", *words, "--log", path.with_suffix(".log")],
                        check=False, stdout=subprocess.DEVNULL)
-        subprocess.run([PROGRAM, "log", path.with_suffix(".log")], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([PROGRAM, "log", path.with_suffix(".log"), "--force"], check=True, stdout=subprocess.DEVNULL)
         if scenario == "experiment":
             titles, *rows = path.read_text().splitlines()
             until_s = float(rows[0].split(",")[0]) + PART_S

@@ -78,7 +78,7 @@ class Log(unittest.TestCase):
     def test_two_dumps_make_two_files_also_when_the_second_announcement_was_lost(self):
         later = [TITLES, *ROWS[10:]]
         for second in (dump(later), dump(later)[1:]):
-            done = self.log("two.txt", text(dump() + second))
+            done = self.log("two.txt", text(dump() + second), "--force")
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual(self.written("two.csv"), CSV)
             self.assertEqual(self.written("two-2.csv"), "".join(row + "\n" for row in later))
@@ -95,7 +95,7 @@ class Log(unittest.TestCase):
         at = good.index(row)
         for offset in range(len("OK LOG "), len(row) + 4):
             octet = "7" if good[at + offset] != "7" else "8"
-            done = self.log("bad.txt", good[:at + offset] + octet + good[at + offset + 1:])
+            done = self.log("bad.txt", good[:at + offset] + octet + good[at + offset + 1:], "--force")
             self.assertEqual(done.returncode, 1, offset)
             self.assertEqual(self.written("bad.csv"), "".join(r + "\n" for n, r in enumerate(ROWS) if n != 12), offset)
 
@@ -118,6 +118,54 @@ class Log(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(self.written("console-log.csv"), CSV)
         self.assertEqual(self.log("a.txt", text(dump() + dump()), "-o", "-").returncode, 2)
+
+    def plomada(self, *words):
+        return subprocess.run([PROGRAM, "log", *words], cwd=self.dir, capture_output=True, text=True, check=False)
+
+    def test_two_flights_of_one_name_do_not_become_one_file(self):
+        for folder in ("x", "y", "out"):
+            (self.dir / folder).mkdir()
+        (self.dir / "x/console.log").write_text(text(dump()))
+        (self.dir / "y/console.log").write_text(text(dump(ROWS[:9])))
+        for force in ((), ("--force",)):
+            done = self.plomada("x/console.log", "y/console.log", "-o", "out", *force)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("plomada log: out/console.csv: two dumps would have this name", done.stderr)
+            self.assertEqual(list((self.dir / "out").iterdir()), [])
+        self.assertEqual(self.plomada("x/console.log", "y/console.log").returncode, 0)
+        self.assertEqual(self.written("x/console.csv"), CSV)
+        (self.dir / "x/again.log").write_text(text(dump()))
+        self.assertEqual(self.plomada("x/console.log", "x/again.log", "-o", "-").returncode, 2)
+
+    def test_another_log_that_is_there_is_not_replaced_unasked_and_the_same_one_is_no_fault(self):
+        (self.dir / "a.csv").write_text("what fly --csv wrote\n")
+        (self.dir / "b.txt").write_text(text(dump()))
+        (self.dir / "a.txt").write_text(text(dump()))
+        done = self.plomada("b.txt", "a.txt")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("plomada log: a.csv: is there already, and is another log", done.stderr)
+        self.assertEqual((self.written("a.csv"), (self.dir / "b.csv").exists()), ("what fly --csv wrote\n", False))
+        for force in (("--force",), ()):
+            self.assertEqual(self.plomada("a.txt", *force).returncode, 0)
+            self.assertEqual(self.written("a.csv"), CSV)
+
+    def test_a_file_that_is_read_is_never_written(self):
+        (self.dir / "a.csv").symlink_to("a.txt")
+        (self.dir / "a.txt").write_text(text(dump()))
+        before = (self.dir / "a.txt").read_bytes()
+        done = self.plomada("a.txt", "--force")
+        self.assertEqual((done.returncode, done.stderr), (2, "plomada log: a.csv: is read here; -o DIR writes elsewhere\n"))
+        self.assertEqual((self.dir / "a.txt").read_bytes(), before)
+
+    def test_an_empty_log_is_named_and_not_written(self):
+        for rows, leave_out, reason in ((ROWS[:1], (), "the log is empty"), (ROWS, range(1, len(ROWS)), "none of its records came")):
+            done = self.log("e.txt", text(dump(rows, leave_out)))
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(f"e.txt, dump 1: {reason}: not written\n", done.stderr)
+            self.assertFalse((self.dir / "e.csv").exists())
+        done = self.log("f.txt", text(dump(ROWS[:1]) + dump()))
+        self.assertEqual((done.returncode, done.stderr), (1, "f.txt, dump 1: the log is empty: not written\n"))
+        self.assertEqual((self.written("f-2.csv"), (self.dir / "f.csv").exists()), (CSV, False))
 
     def test_nothing_to_read_is_an_error(self):
         done = self.log("t.txt", TELEMETRY + "\n")

@@ -1,4 +1,6 @@
 """tools/xctu/packets.py and the list it writes."""
+import contextlib
+import io
 import sys
 import unittest
 import xml.etree.ElementTree as ElementTree
@@ -27,6 +29,14 @@ class Packets(unittest.TestCase):
   </packets_list>
 </data>
 """)
+
+    def test_what_cannot_be_is_one_line_and_status_2(self):
+        for arguments, reason in ((["--sum", "#KP\xf1"], "not ASCII"), (["--with-sums", "/nonexist/x.xml"], "/nonexist/x.xml: No such file")):
+            told = io.StringIO()
+            with contextlib.redirect_stderr(told):
+                self.assertEqual(packets.main(arguments), 2)
+            self.assertIn(reason, told.getvalue())
+            self.assertEqual(told.getvalue().count("\n"), 1)
 
     def test_names_are_unique_and_say_what_is_sent(self):
         found = list(ElementTree.fromstring(packets.document()).iter("packet"))

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -277,6 +278,38 @@ class Drawing(Case):
             done = self.plot(*arguments)
             self.assertEqual((done.returncode, done.stdout, done.stderr.count("\n")), (2, "", 1), done.stderr)
             self.assertIn(reason, done.stderr)
+
+    def test_an_output_that_is_no_picture_or_is_read_is_refused_and_nothing_changes(self):
+        text = self.write("c2.txt", f"{LINE}\n" * 9)
+        page = self.write("page.html", f"{LINE}\n" * 9)
+        for file, output, reason in ((text, text, "no name of a picture"), (text, self.dir / "c2.jpeg.old", "no name of a picture"),
+                                     (page, self.dir / "page.png", "page.html: is read here")):
+            before = file.read_bytes()
+            done = self.plot(file, "-o", output)
+            self.assertEqual((done.returncode, done.stdout, done.stderr.count("\n")), (2, "", 1), done.stderr)
+            self.assertIn(reason, done.stderr)
+            self.assertEqual(file.read_bytes(), before)
+
+    def a_program(self, script):
+        path = self.write("program", f"#!/bin/sh\n{script}\n")
+        path.chmod(0o755)
+        return ("--program", path)
+
+    def test_two_consoles_of_one_name_are_two_flights(self):
+        drawn, files = [], []
+        for name in ("x", "y"):
+            (self.dir / name).mkdir()
+            files.append(self.write(f"{name}/console.log", "OK LOG 1 74.3,0.6*0000\n"))
+            self.write(f"{name}/console.log.csv", RECORDER)
+        program = self.a_program('test ! -e "$4/console.csv" && cp "$2.csv" "$4/console.csv" && echo "$4/console.csv: 50 rows"')
+        with unittest.mock.patch.object(plot, "groups", lambda found: drawn.extend(found) or []):
+            self.assertEqual(self.plot(*files, *program).returncode, 0)
+        self.assertEqual(len(set(drawn)), 2)
+
+    def test_what_the_dump_lacks_is_told_of_the_file_that_was_typed(self):
+        log = self.write("e.txt", "OK LOG 0 t_s,meas_m*0000\nOK LOG 1 7*0000\n")
+        done = self.plot(log, *self.a_program('echo "$2, dump 1: the log is empty: not written" >&2; exit 2'))
+        self.assertEqual((done.returncode, done.stderr), (2, f"plot: {log}, dump 1: the log is empty: not written\n"))
 
     def test_the_belief_is_drawn_from_a_flight_that_tells_it_and_from_no_other(self):
         titles, *rows = FLIGHT.splitlines()

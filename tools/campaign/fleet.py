@@ -93,7 +93,7 @@ def key(program_digest, arguments):
 @contextlib.contextmanager
 def fleet(scheduler=None):
     """A Dask client: of the cluster at that address, else of this machine with a thread per processor, each of which
-    waits for the process of its flight. A cluster's workers need the program at the same path."""
+    waits for the process of its flight. What fails is told by Broken alone, without Dask's traceback. A cluster's workers need the program at the same path."""
     from distributed import Client, LocalCluster
 
     if scheduler:
@@ -103,7 +103,7 @@ def fleet(scheduler=None):
             yield client
         return
     with LocalCluster(n_workers=1, threads_per_worker=len(os.sched_getaffinity(0)), processes=False,
-                      dashboard_address="127.0.0.1:0", silence_logs="ERROR") as cluster, Client(cluster) as client:
+                      dashboard_address="127.0.0.1:0", silence_logs="CRITICAL") as cluster, Client(cluster) as client:
         yield client
 
 

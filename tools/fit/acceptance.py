@@ -82,7 +82,7 @@ def experiment(program, figures, seed, path, scenario="experiment"):
     console = path.with_suffix(".log")
     subprocess.run([program, "fly", scenario, "--seed", str(seed), *words(figures), "--log", str(console)], check=False,
                    stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
-    subprocess.run([program, "log", str(console)], check=True, stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+    subprocess.run([program, "log", str(console), "--force"], check=True, stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
     console.unlink()
 
 

@@ -40,6 +40,8 @@ def main(argv=None):
     parser.add_argument("--forecast", type=Path, default=forecast.ROOT / "build/forecast.json")
     arguments = parser.parse_args(argv)
     try:
+        if not arguments.forecast.exists():
+            raise flight_log.Unfit(f"{arguments.forecast}: no forecast; `make tune VEHICLE=build/vehicle.json` makes one")
         expected, old = forecast.load_forecast(arguments.forecast)
         seen = forecast.quality(arguments.log)
     except (flight_log.Unfit, OSError, ValueError) as error:

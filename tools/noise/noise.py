@@ -11,6 +11,7 @@ import argparse
 import csv
 import ctypes
 import math
+import os
 import re
 import subprocess
 import sys
@@ -304,6 +305,8 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--fit", action="store_true")
     options = parser.parse_args()
+    if not os.access(options.program, os.X_OK) or not Path(options.program).is_file():
+        parser.error(f"{options.program}: no program; make build")
 
     plan.extend({"laws": {"EST-THREE": {"scenario": "est-60cm-ramp", "settings": {"LAYOUT": "THREE"}}}})
     healthy = situations.load(situations.HEALTHY)

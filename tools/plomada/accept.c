@@ -357,6 +357,28 @@ static void forget_state(void)
     unlink(path);
 }
 
+/* Recordings are read, the report is written. */
+static bool files_apart(void)
+{
+    static const char *const suffixes[] = {"state", "json", "md"};
+    const lines_t *lines = &order.means.lines;
+    output_use_t uses[] = {{"--report", NULL, true},
+                           {"--pulses", lines->pulses, false},
+                           {"--bits laser", lines->bits[BOARD_LASER], false},
+                           {"--bits imu", lines->bits[BOARD_IMU], false},
+                           {"--bits xbee", lines->bits[BOARD_RADIO], false}};
+    char path[PATH_MAX];
+
+    for (size_t i = 0; i < sizeof suffixes / sizeof suffixes[0]; i++) {
+        name_file(path, suffixes[i]);
+        uses[0].path = path;
+        if (!output_apart("accept", uses, sizeof uses / sizeof uses[0])) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static int run(void)
 {
     world_config_t config = {.seed = 1, .quadrotor = quadrotor_default, .line = terminal_line};
@@ -366,6 +388,9 @@ static int run(void)
 
     if (is_of_another()) {
         complain("the report of another acceptance; another --report PREFIX, or --afresh", order.report);
+        return 2;
+    }
+    if (!files_apart()) {
         return 2;
     }
     memcpy(config.device, order.means.lines.path, sizeof config.device);

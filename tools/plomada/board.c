@@ -10,6 +10,7 @@
 
 #include "commands.h"
 #include "lines.h"
+#include "output.h"
 #include "sim/board.h"
 #include "sim/costs.h"
 #include "sim/host/pace.h"
@@ -528,6 +529,18 @@ static void close_wires(void)
     }
 }
 
+static bool files_apart(void)
+{
+    const lines_t *lines = &order.lines;
+    const output_use_t uses[] = {{"--storage", order.storage, true},
+                                 {"--pulses", lines->pulses, true},
+                                 {"--bits laser", lines->bits[BOARD_LASER], true},
+                                 {"--bits imu", lines->bits[BOARD_IMU], true},
+                                 {"--bits xbee", lines->bits[BOARD_RADIO], true}};
+
+    return output_apart("board", uses, sizeof uses / sizeof uses[0]);
+}
+
 static bool load_storage(void)
 {
     const char *error = order.storage != NULL ? flash_load(order.storage) : NULL;
@@ -551,7 +564,7 @@ int command_board(int argc, char **argv)
     noise_init(&bench.noise, order.seed, "nonsense");
     pace_begin();
     (void)signal(SIGUSR1, on_power_cycle);
-    begun = load_storage() && open_recordings() && open_wires();
+    begun = files_apart() && load_storage() && open_recordings() && open_wires();
     if (begun) {
         printf("board: %s %s %s\n", order.lines.path[BOARD_LASER], order.lines.path[BOARD_IMU],
                order.lines.path[BOARD_RADIO]);

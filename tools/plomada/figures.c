@@ -12,7 +12,7 @@ static const char *meaning(metric_t metric)
     case METRIC_OVERSHOOT_MM:
         return "highest above the reference after take-off; 0 is best";
     case METRIC_HOVER_RMS_MM:
-        return "distance from the reference in the hover, rms; 0 is best";
+        return "distance from the reference in force in the hover, rms; 0 is best";
     case METRIC_HOVER_MEAN_ERROR_MM:
         return "the mean of it; above 0: hovers too high";
     case METRIC_TERRAIN_RMS_MM:
@@ -36,9 +36,9 @@ static const char *meaning(metric_t metric)
     case METRIC_COMMANDS_ERR:
         return "commands that were refused; 0 is good";
     case METRIC_MAX_ERROR_MM:
-        return "largest distance from the reference, from 6 s to the landing command";
+        return "largest distance from the reference in force, from 6 s to the landing command";
     case METRIC_ALTITUDE_ERROR_MM:
-        return "the same above the floor, whatever stands on it; of interest with TERRAIN IGNORE";
+        return "the same above the floor, also on the way to another reference; for TERRAIN IGNORE";
     case METRIC_HIGHEST_MM:
         return "highest above the reference in the whole flight";
     case METRIC_TOUCH_SPEED_MPS:

@@ -37,7 +37,10 @@ static const char usage[] =
     "it: all lines\n"
     "                      of the radio. `plomada log FILE` makes a CSV of it, for `make fit`\n"
     "  --radio FILE        all lines of the radio, and neither of these orders: #LOG answers for minutes\n"
-    "  --json FILE         metrics. - as FILE of --csv or --json is stdout; the table then goes to stderr\n"
+    "  --json FILE         metrics. - as FILE of --csv or --json is stdout; the table then goes to stderr. "
+    "Each file has a\n"
+    "                      name of its own: one for two of these options, or one that is read too, is "
+    "refused\n"
     "  --storage FILE      the chip's flash: what #SAVE has stored there in one run is in force in the next. "
     "Without it the\n"
     "                      storage is blank at power-on. The file is made when there is none\n"
@@ -62,7 +65,9 @@ static const char usage[] =
     "modelled, its\n"
     "                      ground end is a pseudo-terminal whose name is the first line of the output; "
     "tools/ground/bridge.py\n"
-    "                      offers it to a browser. Without --xbee the telemetry goes to stdout\n"
+    "                      offers it to a browser. Without --xbee the telemetry goes to stdout. The figures "
+    "are then\n"
+    "                      those that need no plan, of the references that were in force; none is judged\n"
     "  --realtime          paced by the wall clock; needs one of the three above, but for bench\n"
     "  --duration S        the landing command comes after S seconds instead of at the scenario's time, and "
     "the battery\n"
@@ -148,7 +153,7 @@ typedef struct {
     flight_options_t flight;
     const scenario_t *scenario;
     output_t csv, json, log, trace, record;
-    const char *storage_path, *record_dir, *place_path, *limits_path;
+    const char *scenario_path, *vehicle_path, *storage_path, *record_dir, *place_path, *limits_path;
     double cost_scale;
     bool help, height, timing;
 } request_t;
@@ -247,6 +252,7 @@ static bool read_option(request_t *request, int option, const char *argument)
         error = flight_override(&request->flight, argument);
         return error == NULL || complain(error, argument);
     case OPT_VEHICLE:
+        request->vehicle_path = argument;
         error = vehicle_read(&request->flight, argument);
         return error == NULL || complain(error, argument);
     case OPT_TIMING:
@@ -342,8 +348,9 @@ static bool no_such_scenario(const char *name)
 
 static bool find_scenario(request_t *request, const char *name)
 {
-    if (strpbrk(name, "./") != NULL) {
-        request->scenario = scenario_file_read(name);
+    if (scenario_file_named(name)) {
+        request->scenario_path = name;
+        request->scenario = scenario_file_read("fly", name);
         return request->scenario != NULL;
     }
     request->scenario = scenario_find(name);
@@ -395,10 +402,30 @@ static bool print_verdict(FILE *out, const request_t *request, const flight_resu
     return met;
 }
 
+static bool needs_no_plan(metric_t metric)
+{
+    return !metrics_needs_plan(metric);
+}
+
+/* The scenario has ordered nothing: what it expects is not expected of those who have. */
+static void print_by_hand(FILE *out, const request_t *request, const flight_result_t *result)
+{
+    scenario_t plain = *request->scenario;
+
+    plain.expectation_count = 0;
+    figures_print(out, &plain, &result->metrics, needs_no_plan);
+    fprintf(out, "Not judged: the scenario ordered nothing. The figures are of the references that were in "
+                 "force.\n");
+}
+
 static bool print_result(FILE *out, const request_t *request, const flight_result_t *result)
 {
     fprintf(out, "%s, seed %lu\n", request->scenario->name, request->flight.seed);
-    figures_print(out, request->scenario, &result->metrics, NULL);
+    if (request->flight.realtime) {
+        print_by_hand(out, request, result);
+    } else {
+        figures_print(out, request->scenario, &result->metrics, NULL);
+    }
     return print_verdict(out, request, result);
 }
 
@@ -451,21 +478,47 @@ static FILE *reading_matter(const request_t *request)
     return output_is_stdout(&request->csv) || output_is_stdout(&request->json) ? stderr : stdout;
 }
 
-static bool open_record(request_t *request)
+static void name_record(request_t *request)
 {
     static char path[PATH_MAX];
 
-    if (request->record_dir == NULL) {
+    if (request->record_dir != NULL) {
+        snprintf(path, sizeof path, "%s/%s", request->record_dir, RECORDING_NAME);
+        request->record.path = path;
+    }
+}
+
+static bool files_apart(const request_t *request)
+{
+    const output_use_t uses[] = {
+        {"SCENARIO", request->scenario_path, false},
+        {"--vehicle", request->vehicle_path, false},
+        {"--place", request->place_path, false},
+        {"--limits", request->limits_path, false},
+        {"--storage", request->storage_path, true},
+        {"--record", request->record.path, true},
+        {"--csv", request->csv.path, true},
+        {"--json", request->json.path, true},
+        {"--trace", request->trace.path, true},
+        {request->flight.dump ? "--log" : "--radio", request->log.path, true},
+    };
+
+    return output_apart("fly", uses, sizeof uses / sizeof uses[0]);
+}
+
+static bool open_record(request_t *request)
+{
+    const char *path = request->record.path;
+
+    if (path == NULL) {
         return true;
     }
     if (mkdir(request->record_dir, 0777) != 0 && errno != EEXIST) {
         return complain(strerror(errno), request->record_dir);
     }
-    snprintf(path, sizeof path, "%s/%s", request->record_dir, RECORDING_NAME);
     if (access(path, F_OK) == 0) {
         return complain("there is a recording already; another --record DIR, or remove it", path);
     }
-    request->record.path = path;
     return output_open(&request->record);
 }
 
@@ -508,7 +561,9 @@ static int run(request_t *request)
     const char *error;
     bool met, kept;
 
-    if (!load_place(request) || !load_storage(request->storage_path) || !open_outputs(request)) {
+    name_record(request);
+    if (!files_apart(request) || !load_place(request) || !load_storage(request->storage_path) ||
+        !open_outputs(request)) {
         return 2;
     }
     request->flight.costs = measure_begin(request->cost_scale, request->trace.file, request->limits_path);

@@ -8,6 +8,8 @@
 #include "commands.h"
 #include "figures.h"
 #include "lines.h"
+#include "scenario_file.h"
+#include "sim/scenarios/place_file.h"
 #include "sim/scenarios/seed_course.h"
 #include "sim/scenarios/wires.h"
 #include "terminal.h"
@@ -19,6 +21,7 @@ static const char usage[] =
     "adapters, in real\n"
     "time; the board runs its flight image unchanged and tells its throttle pulse by `#STREAM PULSE`. No "
     "motors, no propellers.\n"
+    "SCENARIO: a name, or a file of your own with a dot or a slash in its name.\n"
     "docs/acceptance.md says how to wire it. `plomada board` is a board to try it on.\n\n"
     "  --seed N            noise and phases (default 1)\n"
     "  --pulses FILE       the pulse as a logic analyser sees it on the pin, by sigrok-cli -O csv into a "
@@ -27,7 +30,10 @@ static const char usage[] =
     "                      in place of what the board tells\n"
     "  --patience S        how long the board may take until it has heights (default 40; the scanner waits "
     "10 s)\n\n"
-    "Printed: the metrics, what the loop through the adapters takes, troubles by line, the verdict. The "
+    "A flight that needs a pilot, a battery or another vehicle is refused.\n\n"
+    "Printed: the figures that are known from outside the board (a line names the others), what the loop "
+    "through the\n"
+    "adapters takes, troubles by line, the verdict. The "
     "expectations are the\n"
     "scenario's, widened by what the added delay costs in simulation: each to either side by the most that "
     "its metric changes\n"
@@ -87,17 +93,36 @@ static bool read_option(int option, const char *argument)
     }
 }
 
+/* The airframe is the delivered one, its battery never empties, and no pilot stands beside it. */
+static bool is_played(const char *subject)
+{
+    const scenario_t *scenario = order.scenario;
+
+    if (scenario->plant[0] != NULL) {
+        fprintf(stderr, "plomada hil: %s: sets %.*s, which the world of a real board does not have\n",
+                subject, (int)strcspn(scenario->plant[0], " "), scenario->plant[0]);
+        return false;
+    }
+    return !scenario->field_day ||
+           complain("needs a pilot, whom the world of a real board does not have", subject);
+}
+
 static bool read_scenario(int argc, char **argv)
 {
     if (optind + 1 != argc) {
         return complain("one SCENARIO is needed, see `plomada list`",
                         optind < argc ? argv[optind + 1] : "hil");
     }
-    order.scenario = scenario_find(argv[optind]);
+    const bool own = scenario_file_named(argv[optind]);
+
+    order.scenario = own ? scenario_file_read("hil", argv[optind]) : scenario_find(argv[optind]);
+    if (own && order.scenario == NULL) {
+        return false; /* said so */
+    }
     if (order.scenario == NULL || order.scenario->bench) {
         return complain("no such flight, see `plomada list`", argv[optind]);
     }
-    return true;
+    return is_played(argv[optind]);
 }
 
 static bool read_arguments(int argc, char **argv)
@@ -109,12 +134,27 @@ static bool read_arguments(int argc, char **argv)
            (order.lines.help || read_scenario(argc, argv));
 }
 
+/* What only the firmware knows, or the autopilot. */
+static void name_unmeasured(void)
+{
+    const char *between = "not measured here: ";
+
+    for (int i = 0; i < METRIC_COUNT; i++) {
+        if (!bench_can_judge((metric_t)i)) {
+            printf("%s%s", between, metric_names[i]);
+            between = ", ";
+        }
+    }
+    printf("\n");
+}
+
 static void print_metrics(const bench_flight_t *flight)
 {
     scenario_t plain = *order.scenario;
 
     plain.expectation_count = 0; /* judge() has them, widened by the delay of the adapters */
     figures_print(stdout, &plain, &flight->metrics, bench_can_judge);
+    name_unmeasured();
     if (flight->has_delay) {
         printf("loop: %.1f ms from a scan's last octet to its pulse (95 %%: %.1f; in simulation %.1f)\n",
                flight->delay_ms, flight->delay_most_ms, bench_simulated_delay_ms(order.scenario));
@@ -177,23 +217,30 @@ static int conclude(const bench_flight_t *flight)
     return met && flight->safe ? 0 : 1;
 }
 
+static void lay_place(world_config_t *config)
+{
+    static place_file_t file;
+
+    if (order.scenario->place != NULL) {
+        (void)place_file_read(&file, order.scenario->place, order.seed); /* it was read before */
+    } else {
+        seed_course_lay(order.scenario->platform ? &seed_course_ramp : &seed_course_flat, order.seed,
+                        &file.place, &file.course);
+    }
+    config->place = &file.place;
+    config->course = &file.course;
+}
+
 static int run(void)
 {
     static bench_flight_t flight;
-    static place_t place;
-    static course_t course;
-    world_config_t config = {.seed = order.seed,
-                             .place = &place,
-                             .course = &course,
-                             .quadrotor = quadrotor_default,
-                             .line = terminal_line};
+    world_config_t config = {.seed = order.seed, .quadrotor = quadrotor_default, .line = terminal_line};
     board_wire_t failed;
     const char *error;
 
     memcpy(config.device, order.lines.path, sizeof config.device);
     config.pulses = order.lines.pulses;
-    seed_course_lay(order.scenario->platform ? &seed_course_ramp : &seed_course_flat, order.seed, &place,
-                    &course);
+    lay_place(&config);
     config.quadrotor.tug_rate_per_s = order.scenario->tug_rate_per_s;
     config.quadrotor.climb_rate_mps_per_n = order.scenario->climb_rate_mps_per_n;
     terminal_begin();

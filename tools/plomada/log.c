@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "commands.h"
 #include "drivers/line_sum.h"
@@ -19,17 +20,24 @@
 #define NAMED_MAX 8 /* rows that a message names one by one */
 
 static const char usage[] =
-    "usage: plomada log FILE... [-o DIR|-]\n\n"
-    "Writes the #LOG dumps in what was saved of a flight as CSV: FILE.csv, and FILE-2.csv and so on for "
-    "further dumps.\n"
-    "FILE is text as a terminal saved it, or a console log of XCTU (its payloads in hex); telemetry and "
-    "other answers\n"
-    "between the rows do not matter.\n\n"
-    "  -o DIR              where to (default: beside FILE); - is stdout, for a single dump\n\n"
-    "Each row is checked by its own sum. What is damaged or missing is left out and named on stderr.\n\n"
-    "Exit status: 0 every dump is whole, 1 something is missing, 2 usage, no dump, or a file that cannot be "
-    "read or\n"
-    "written.\n";
+    "usage: plomada log FILE... [-o DIR|-] [--force]\n\n"
+    "Writes the #LOG dumps in what was saved of a flight as CSV. The first dump of flight.txt becomes "
+    "flight.csv, further\n"
+    "ones flight-2.csv and so on; that of flight.csv becomes flight-log.csv. FILE is text as a terminal "
+    "saved it, or a\n"
+    "console log of XCTU (its payloads in hex); telemetry and other answers between the rows do not "
+    "matter.\n\n"
+    "  -o DIR              where to (default: beside FILE); - is stdout, for a single dump\n"
+    "  --force             a CSV that is there already is overwritten. Without it another log of that name "
+    "is refused, and\n"
+    "                      nothing is written. Two dumps of one name are refused in any case, and so is a "
+    "FILE as output\n\n"
+    "Each row is checked by its own sum. What is damaged or missing is left out and named on stderr. A log "
+    "of no records is\n"
+    "named, and not written.\n\n"
+    "Exit status: 0 every dump is whole, 1 something is missing, 2 usage, no dump that has a record, a file "
+    "that is there\n"
+    "already, or one that cannot be read or written.\n";
 
 /* A dump: its rows by their number; row 0 is the titles. */
 typedef struct {
@@ -45,6 +53,18 @@ typedef struct {
     size_t damaged; /* rows whose sum is wrong */
     bool cut;       /* the file ends within a row */
 } harvest_t;
+
+typedef struct {
+    const char *file;
+    harvest_t harvest;
+} source_t;
+
+static struct {
+    char **files;
+    int count;
+    const char *directory;
+    bool force;
+} order;
 
 static void *resized(void *memory, size_t octets)
 {
@@ -163,6 +183,17 @@ static bool has_row(const dump_t *dump, size_t row)
     return row < dump->count && dump->rows[row] != NULL;
 }
 
+static size_t records(const dump_t *dump)
+{
+    return rows_due(dump) - 1 - missing(dump);
+}
+
+/* Nothing was recorded, and nothing is missing. */
+static bool is_empty(const dump_t *dump)
+{
+    return has_row(dump, 0) && rows_due(dump) == 1 && (dump->announced == 0 || dump->ended);
+}
+
 static void name_missing(const char *file, size_t number, const dump_t *dump)
 {
     const size_t due = rows_due(dump);
@@ -199,6 +230,8 @@ static bool whole(const char *file, const harvest_t *harvest)
         if (missing(&harvest->dumps[i]) > 0) {
             name_missing(file, i + 1, &harvest->dumps[i]);
             nothing_lost = false;
+        } else if (is_empty(&harvest->dumps[i])) {
+            nothing_lost = false; /* plan() has said so */
         } else if (!harvest->dumps[i].ended) {
             fprintf(stderr, "%s, dump %zu: its end was not received\n", file, i + 1);
             nothing_lost = false;
@@ -211,8 +244,13 @@ static bool whole(const char *file, const harvest_t *harvest)
  * ----------------------------------------------------------------------------------------------------------
  */
 
+static bool to_stdout(void)
+{
+    return order.directory != NULL && strcmp(order.directory, "-") == 0;
+}
+
 /* FILE without its directory and ending, in DIR; -2 and so on for a further dump. Never FILE itself. */
-static void name_output(char path[PATH_MAX], const char *file, const char *directory, size_t number)
+static void name_output(char path[PATH_MAX], const char *file, size_t number)
 {
     const char *slash = strrchr(file, '/'), *base = slash == NULL ? file : slash + 1,
                *dot = strrchr(base, '.');
@@ -222,8 +260,10 @@ static void name_output(char path[PATH_MAX], const char *file, const char *direc
     if (number > 1) {
         snprintf(further, sizeof further, "-%zu", number);
     }
-    if (directory != NULL) {
-        snprintf(path, PATH_MAX, "%s/%.*s%s.csv", directory, length, base, further);
+    if (to_stdout()) {
+        strcpy(path, "-");
+    } else if (order.directory != NULL) {
+        snprintf(path, PATH_MAX, "%s/%.*s%s.csv", order.directory, length, base, further);
     } else {
         snprintf(path, PATH_MAX, "%.*s%.*s%s.csv", (int)(base - file), file, length, base, further);
     }
@@ -232,43 +272,118 @@ static void name_output(char path[PATH_MAX], const char *file, const char *direc
     }
 }
 
-static bool write_dump(const dump_t *dump, const char *path)
+static void write_rows(const dump_t *dump, FILE *out)
 {
-    output_t output = {.path = path};
-
-    if (!output_open(&output)) {
-        return false;
-    }
     for (size_t i = 0; i < dump->count; i++) {
         if (dump->rows[i] != NULL) {
-            fprintf(output.file, "%s\n", dump->rows[i]);
+            fprintf(out, "%s\n", dump->rows[i]);
         }
     }
-    return output_close(&output);
 }
 
-static bool write_dumps(const char *file, const harvest_t *harvest, const char *directory)
+/* Whether the file has this dump already, and nothing else. */
+static bool has_it(const char *path, const dump_t *dump)
 {
-    const bool to_stdout = directory != NULL && strcmp(directory, "-") == 0;
+    char *text = NULL;
+    size_t length = 0, at = 0;
+    FILE *memory = open_memstream(&text, &length), *file = fopen(path, "r");
+    int c = EOF;
 
-    if (to_stdout && harvest->count > 1) {
-        fprintf(stderr, "plomada log: %s: %zu dumps do not go to stdout together\n", file, harvest->count);
+    if (memory == NULL) {
+        abort();
+    }
+    write_rows(dump, memory);
+    fclose(memory);
+    while (file != NULL && (c = fgetc(file)) != EOF && at < length && c == (unsigned char)text[at]) {
+        at++;
+    }
+    free(text);
+    return file != NULL && fclose(file) == 0 && c == EOF && at == length;
+}
+
+static bool complain(const char *what, const char *subject)
+{
+    fprintf(stderr, "plomada log: %s: %s\n", subject, what);
+    return false;
+}
+
+/* One dump, and where it goes. */
+typedef struct {
+    const dump_t *dump;
+    char path[PATH_MAX];
+} planned_t;
+
+static planned_t *planned;
+static size_t planned_count;
+
+static void plan(const source_t *source)
+{
+    for (size_t i = 0; i < source->harvest.count; i++) {
+        const dump_t *dump = &source->harvest.dumps[i];
+
+        if (!has_row(dump, 0)) {
+            fprintf(stderr, "%s, dump %zu: the row with the titles is missing: not written\n", source->file,
+                    i + 1);
+        } else if (records(dump) == 0) {
+            fprintf(stderr, "%s, dump %zu: %s: not written\n", source->file, i + 1,
+                    is_empty(dump) ? "the log is empty" : "none of its records came");
+        } else {
+            planned = resized(planned, (planned_count + 1) * sizeof *planned);
+            planned[planned_count].dump = dump;
+            name_output(planned[planned_count++].path, source->file, i + 1);
+        }
+    }
+}
+
+/* What another flight left is never replaced unasked, and what is read here never. */
+static bool is_free(size_t number)
+{
+    const char *path = planned[number].path;
+
+    for (int i = 0; i < order.count; i++) {
+        if (output_same(path, order.files[i])) {
+            return complain("is read here; -o DIR writes elsewhere", path);
+        }
+    }
+    for (size_t i = 0; i < number; i++) {
+        if (output_same(path, planned[i].path)) {
+            return complain(to_stdout()
+                                ? "several dumps do not go to stdout together"
+                                : "two dumps would have this name; give each FILE an -o DIR of its own",
+                            path);
+        }
+    }
+    return order.force || to_stdout() || access(path, F_OK) != 0 || has_it(path, planned[number].dump) ||
+           complain("is there already, and is another log; -o DIR writes elsewhere, --force overwrites it",
+                    path);
+}
+
+static bool all_free(void)
+{
+    bool fine = true;
+
+    for (size_t i = 0; i < planned_count; i++) {
+        fine = is_free(i) && fine;
+    }
+    return fine;
+}
+
+static bool write_dump(const planned_t *one)
+{
+    output_t output = {.path = one->path};
+    const bool there = !to_stdout() && has_it(one->path, one->dump);
+
+    if (!there && !output_open(&output)) {
         return false;
     }
-    for (size_t i = 0; i < harvest->count; i++) {
-        char path[PATH_MAX];
-
-        name_output(path, file, directory, i + 1);
-        if (!has_row(&harvest->dumps[i], 0)) {
-            fprintf(stderr, "%s, dump %zu: the row with the titles is missing: not written\n", file, i + 1);
-            continue;
-        }
-        if (!write_dump(&harvest->dumps[i], to_stdout ? "-" : path)) {
-            return false;
-        }
-        if (!to_stdout) {
-            printf("%s: %zu rows\n", path, rows_due(&harvest->dumps[i]) - 1 - missing(&harvest->dumps[i]));
-        }
+    if (!there) {
+        write_rows(one->dump, output.file);
+    }
+    if (!output_close(&output)) {
+        return false;
+    }
+    if (!to_stdout()) {
+        printf("%s: %zu rows\n", one->path, records(one->dump));
     }
     return true;
 }
@@ -284,52 +399,98 @@ static void release(harvest_t *harvest)
     free(harvest->dumps);
 }
 
-static int convert(const char *file, const char *directory)
+static int worse(int one, int other)
 {
-    harvest_t harvest = {.dumps = NULL};
-    FILE *in = fopen(file, "r");
-    int status = 2;
+    return one > other ? one : other;
+}
+
+/* 2: there is nothing to write. */
+static int read_source(source_t *source)
+{
+    FILE *in = fopen(source->file, "r");
+    const size_t before = planned_count;
 
     if (in == NULL) {
-        fprintf(stderr, "plomada log: %s: %s\n", file, strerror(errno));
+        (void)complain(strerror(errno), source->file);
         return 2;
     }
-    read_file(in, &harvest);
+    read_file(in, &source->harvest);
     fclose(in);
-    if (harvest.count == 0) {
-        fprintf(stderr, "plomada log: %s: no row of a #LOG dump in it\n", file);
-    } else if (write_dumps(file, &harvest, directory)) {
-        status = whole(file, &harvest) ? 0 : 1;
+    if (source->harvest.count == 0) {
+        (void)complain("no row of a #LOG dump in it", source->file);
+        return 2;
     }
-    release(&harvest);
+    plan(source);
+    return planned_count > before ? 0 : 2;
+}
+
+/* Everything is read and named before anything is written. */
+static int convert(source_t *sources)
+{
+    int status = 0;
+
+    for (int i = 0; i < order.count; i++) {
+        sources[i].file = order.files[i];
+        status = worse(status, read_source(&sources[i]));
+    }
+    if (!all_free()) {
+        return 2;
+    }
+    for (size_t i = 0; i < planned_count; i++) {
+        if (!write_dump(&planned[i])) {
+            return 2;
+        }
+    }
+    for (int i = 0; i < order.count; i++) {
+        status = worse(status, whole(sources[i].file, &sources[i].harvest) ? 0 : 1);
+    }
+    return status;
+}
+
+static int run(void)
+{
+    source_t *sources = calloc((size_t)order.count, sizeof *sources);
+    int status;
+
+    if (sources == NULL) {
+        abort();
+    }
+    status = convert(sources);
+    for (int i = 0; i < order.count; i++) {
+        release(&sources[i].harvest);
+    }
+    free(sources);
+    free(planned);
     return status;
 }
 
 int command_log(int argc, char **argv)
 {
-    static const struct option long_options[] = {{"help", no_argument, NULL, 'h'}, {NULL, 0, NULL, 0}};
-    const char *directory = NULL;
-    int option, status = 0;
+    static const struct option long_options[] = {
+        {"help", no_argument, NULL, 'h'}, {"force", no_argument, NULL, 'f'}, {NULL, 0, NULL, 0}};
+    int option;
 
     optind = 1;
     while ((option = getopt_long(argc, argv, "o:h", long_options, NULL)) != -1) {
-        if (option == 'h') {
+        switch (option) {
+        case 'h':
             fputs(usage, stdout);
             return 0;
-        }
-        if (option != 'o') {
+        case 'f':
+            order.force = true;
+            break;
+        case 'o':
+            order.directory = optarg;
+            break;
+        default:
             return 2;
         }
-        directory = optarg;
     }
     if (optind == argc) {
         fputs("plomada log: a FILE is needed; `plomada log --help` tells more.\n", stderr);
         return 2;
     }
-    for (int i = optind; i < argc; i++) {
-        const int one = convert(argv[i], directory);
-
-        status = one > status ? one : status;
-    }
-    return status;
+    order.files = argv + optind;
+    order.count = argc - optind;
+    return run();
 }

@@ -1,7 +1,10 @@
 #include "output.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 bool output_is_stdout(const output_t *output)
 {
@@ -40,4 +43,76 @@ bool output_close(output_t *output)
     }
     output->file = NULL;
     return (flushed && closed && !failed_before) || complain(output);
+}
+
+static bool is_dash(const char *path)
+{
+    return strcmp(path, "-") == 0;
+}
+
+static bool look(const char *path, struct stat *what)
+{
+    return is_dash(path) ? fstat(STDOUT_FILENO, what) == 0 : stat(path, what) == 0;
+}
+
+static const char *base_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+
+    return slash == NULL ? path : slash + 1;
+}
+
+static bool look_at_folder(const char *path, struct stat *what)
+{
+    char folder[PATH_MAX];
+    const int length = (int)(base_of(path) - path);
+
+    snprintf(folder, sizeof folder, "%.*s", length, path);
+    return stat(length == 0 ? "." : folder, what) == 0;
+}
+
+/* Neither is there: by folder and name. */
+static bool same_to_be(const char *one, const char *other)
+{
+    struct stat first, second;
+
+    if (!look_at_folder(one, &first) || !look_at_folder(other, &second)) {
+        return strcmp(one, other) == 0;
+    }
+    return first.st_dev == second.st_dev && first.st_ino == second.st_ino &&
+           strcmp(base_of(one), base_of(other)) == 0;
+}
+
+bool output_same(const char *one, const char *other)
+{
+    struct stat first, second;
+    const bool has_first = look(one, &first), has_second = look(other, &second);
+
+    if (is_dash(one) && is_dash(other)) {
+        return true;
+    }
+    if (has_first && has_second) {
+        return S_ISREG(first.st_mode) && first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+    }
+    return !has_first && !has_second && same_to_be(one, other);
+}
+
+static bool clash(const output_use_t *one, const output_use_t *other)
+{
+    return one->path != NULL && other->path != NULL && (one->written || other->written) &&
+           output_same(one->path, other->path);
+}
+
+bool output_apart(const char *command, const output_use_t *uses, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        for (size_t k = 0; k < i; k++) {
+            if (clash(&uses[i], &uses[k])) {
+                fprintf(stderr, "plomada %s: %s: %s and %s are one file\n", command, uses[i].path,
+                        uses[k].name, uses[i].name);
+                return false;
+            }
+        }
+    }
+    return true;
 }

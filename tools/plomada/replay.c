@@ -30,7 +30,7 @@ static const char usage[] =
     "the vehicle. thrust_n is what it would command next, flown_n what was; `make plot` draws both. What is "
     "not there is\n"
     "named on stderr.\n\n"
-    "  --csv FILE          the log (default: stdout)\n"
+    "  --csv FILE          the log (default: stdout). Never the RECORDING itself\n"
     "  --set NAME=VALUE    a telecommand parameter in place of what was typed for it. The vehicle does not "
     "answer to what\n"
     "                      the firmware commands then (open loop): the log shows in thrust_n what it would "
@@ -108,18 +108,25 @@ static bool read_arguments(request_t *request, int argc, char **argv)
     return true;
 }
 
-static tape_t *load(const char *given)
+/* The file that is meant: RECORDING, or the one in that directory. Stands until the next call. */
+static const char *file_of(const char *given)
 {
-    char path[PATH_MAX];
+    static char path[PATH_MAX];
     struct stat what;
-    const char *error = NULL;
-    tape_t *tape;
-    FILE *in;
 
     snprintf(path, sizeof path, "%s", given);
     if (stat(given, &what) == 0 && S_ISDIR(what.st_mode)) {
         snprintf(path, sizeof path, "%s/%s", given, RECORDING_NAME);
     }
+    return path;
+}
+
+static tape_t *load(const char *path)
+{
+    const char *error = NULL;
+    tape_t *tape;
+    FILE *in;
+
     in = fopen(path, "r");
     if (in == NULL) {
         complain(strerror(errno), path);
@@ -199,12 +206,18 @@ static int run(request_t *request)
 {
     flight_replay_t result;
     const char *error;
+    const output_use_t uses[] = {{"RECORDING", file_of(request->path), false},
+                                 {"--csv", request->csv.path, true}};
+
+    if (!output_apart("replay", uses, sizeof uses / sizeof uses[0])) {
+        return 2;
+    }
     FILE *log = open_log(request->path);
 
     if (log != NULL) {
         return run_log(request, log);
     }
-    tape_t *tape = load(request->path);
+    tape_t *tape = load(uses[0].path);
 
     if (tape == NULL || !retype(request, tape) || !output_open(&request->csv)) {
         return 2;

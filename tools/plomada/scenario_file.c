@@ -7,6 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "control/parameters.h"
 #include "nearest.h"
 #include "sim/scenarios/flight.h"
 #include "sim/scenarios/plant.h"
@@ -147,6 +148,29 @@ static const char *too_early(const later_line_t *line, const char *value)
     return reading.message;
 }
 
+/* Those of the firmware's #HELP; a test asks it. */
+static const char *const verbs[] = {"SETR",     "ARM",  "STOP",      "LAND", "GET",   "SAVE",    "LOAD",
+                                    "DEFAULTS", "LOG",  "CALIBRATE", "RC",   "VOLTS", "LASER",   "IMU",
+                                    "MIRRORS",  "PERF", "STREAM",    "HANG", "PING",  "VERSION", "HELP"};
+#define VERB_COUNT (sizeof verbs / sizeof verbs[0])
+
+static const char *check_verb(const char *name)
+{
+    const char *names[VERB_COUNT + PARAMETER_COUNT];
+    size_t count = 0;
+
+    for (; count < VERB_COUNT; count++) {
+        if (strcasecmp(verbs[count], name) == 0) {
+            return NULL;
+        }
+        names[count] = verbs[count];
+    }
+    for (int i = 0; i < PARAMETER_COUNT; i++) {
+        names[count++] = parameter_table[i].name;
+    }
+    return meant("no such command", name, names, count);
+}
+
 static const char *read_at(void)
 {
     later_line_t *line = &reading.scenario.later[reading.later];
@@ -163,6 +187,8 @@ static const char *read_at(void)
     if (error == NULL && flight_knows(reading.word[2])) {
         error = flight_check(reading.word[2], value);
         error = error == NULL ? NULL : told(error, reading.word[2]);
+    } else if (error == NULL) {
+        error = check_verb(reading.word[2]);
     }
     if (error == NULL && reading.later == SCENARIO_LATER_MAX - 1) {
         error = "too many";
@@ -340,7 +366,12 @@ static const char *name_of(const char *path)
     return slash == NULL ? path : slash + 1;
 }
 
-const scenario_t *scenario_file_read(const char *path)
+bool scenario_file_named(const char *name)
+{
+    return strpbrk(name, "./") != NULL;
+}
+
+const scenario_t *scenario_file_read(const char *command, const char *path)
 {
     FILE *in = fopen(path, "r");
     char text[LINE_MAX_OCTETS];
@@ -367,9 +398,9 @@ const scenario_t *scenario_file_read(const char *path)
         error = check();
     }
     if (error != NULL && number > 0) {
-        fprintf(stderr, "plomada fly: %s:%d: %s\n", path, number, error);
+        fprintf(stderr, "plomada %s: %s:%d: %s\n", command, path, number, error);
     } else if (error != NULL) {
-        fprintf(stderr, "plomada fly: %s: %s\n", path, error);
+        fprintf(stderr, "plomada %s: %s: %s\n", command, path, error);
     }
     return error == NULL ? &reading.scenario : NULL;
 }

@@ -228,6 +228,9 @@ def draw_thrust(axis, recordings, overlay):
     axis.margins(y=0.15)
 
 
+PICTURES = (".png", ".svg", ".pdf")
+
+
 def draw(recordings, title, subtitle, path):
     """Draws recordings (several: flights only) into the PNG `path`, 1200 x 900. Returns the page that tells of one; several: None."""
     import matplotlib
@@ -304,17 +307,30 @@ def picture_path(output, first):
 def with_dumps_converted(files, program, directory):
     """files, those with dumps of #LOG in them replaced by the CSVs that `plomada log` makes of them in a directory."""
     found = []
-    for file in files:
+    for number, file in enumerate(files):
         if not recording.has_dump(file):
             found.append(file)
             continue
+        own = Path(directory, str(number))      # two consoles may have one name
+        own.mkdir()
         if not Path(program).exists():
             raise recording.Unreadable(f"{file}: has a dump of #LOG, which {program} reads: make build")
-        done = subprocess.run([program, "log", file, "-o", directory], stdout=subprocess.PIPE, text=True, check=False)
+        done = subprocess.run([program, "log", file, "-o", str(own)], capture_output=True, text=True, check=False)
         if done.returncode == 2:
-            raise recording.Unreadable(f"{file}: its dump of #LOG cannot be read")
+            raise recording.Unreadable(done.stderr.strip().removeprefix("plomada log: ") or f"{file}: its dump of #LOG cannot be read")
+        print(done.stderr, end="", file=sys.stderr)
         found += [line.rsplit(": ", 1)[0] for line in done.stdout.splitlines()]
     return found
+
+
+def check_output(output, files):
+    """A picture is no other kind of file, and neither it nor its page is one that is read."""
+    path = picture_path(output, files[0])
+    if path.suffix.lower() not in PICTURES:
+        raise recording.Unreadable(f"{path}: no name of a picture: it ends in {', '.join(PICTURES)}, or is a folder with its /")
+    for written in (path, path.with_suffix(".html")):
+        if any(written.exists() and Path(file).exists() and written.samefile(file) for file in files):
+            raise recording.Unreadable(f"{written}: is read here; another -o")
 
 
 def draw_files(files, output):
@@ -345,6 +361,7 @@ def main(arguments):
     options = parser.parse_args(arguments)
     output = options.output or str(Path(options.files[0]).parent) + "/"
     try:
+        check_output(output, options.files)
         with tempfile.TemporaryDirectory(prefix="plomada-") as scratch:
             pictures = groups(with_dumps_converted(options.files, options.program, scratch))
             if len(pictures) > 1 and len(options.files) > 1:

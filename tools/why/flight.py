@@ -58,7 +58,7 @@ def dumps_of(path, program, scratch):
     done = subprocess.run([program, "log", str(copy)], check=False, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     found = sorted(Path(scratch).glob("*.csv"), key=lambda file: file.stat().st_size)
     if not found:
-        raise Unfit(f"{path}: {done.stderr.strip()[:200]}")
+        raise Unfit(done.stderr.strip().replace(str(copy), str(path)).removeprefix("plomada log: ")[:300] or f"{path}: no dump of #LOG")
     return found[-1]            # the longest
 
 

@@ -256,5 +256,5 @@ def fly(program, plan, path):
         if done.returncode == 2:
             raise RuntimeError(f"{plan.cause}: {done.stderr}")
         if not plan.csv:
-            subprocess.run([program, "log", str(console)], check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+            subprocess.run([program, "log", str(console), "--force"], check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
     return path.exists()

@@ -24,6 +24,7 @@ import without  # noqa: E402
 from causes.case import Case  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
+PICTURE = ROOT / "build/why.png"
 WORTH = 3.5                     # nats: what is less than 33 times as likely as nothing is not named
 HINT = math.log(2.0)            # what is less than twice as likely as nothing is not even mentioned
 NOISES, FAR = ("turbulence", "acc_noise", "height_noise"), 3.0  # standard deviations of what healthy flights have
@@ -120,15 +121,25 @@ def table(found):
 def read_arguments(argv):
     parser = argparse.ArgumentParser(prog="plomada why", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("log", type=Path, metavar="LOG")
-    parser.add_argument("--out", type=Path, default=ROOT / "build/why.png", metavar="FILE")
+    parser.add_argument("--out", type=Path, default=PICTURE, metavar="FILE")
     parser.add_argument("--program", type=Path, default=ROOT / "build/plomada", help=argparse.SUPPRESS)
     return parser.parse_args(argv)
+
+
+def check_out(arguments):
+    """A name that was typed is no reason to make folders."""
+    if arguments.out == PICTURE:
+        PICTURE.parent.mkdir(exist_ok=True)
+    if not arguments.out.parent.is_dir():
+        raise OSError(f"{arguments.out}: {arguments.out.parent} is no folder")
+    if arguments.out.exists() and arguments.log.exists() and arguments.out.samefile(arguments.log):
+        raise OSError(f"{arguments.out}: is read here; another --out")
 
 
 def main(argv=None):
     arguments = read_arguments(argv)
     try:
-        arguments.out.parent.mkdir(parents=True, exist_ok=True)     # said before the work
+        check_out(arguments)        # said before the work
         case, found = ask(arguments.log, arguments.program, Progress())
     except (flight.Unfit, OSError) as error:
         print(f"why: {error}", file=sys.stderr)

@@ -52,6 +52,16 @@ def document(commands=COMMANDS):
 
 
 def main(arguments):
+    try:
+        return do(arguments)
+    except UnicodeEncodeError:
+        print(f"packets.py: {arguments[1]!r}: not ASCII, which alone goes by radio", file=sys.stderr)
+    except OSError as error:
+        print(f"packets.py: {error.filename}: {error.strerror}", file=sys.stderr)
+    return 2
+
+
+def do(arguments):
     if arguments == ["--check"]:
         if FILE.read_text(encoding="utf-8") == document():
             return 0

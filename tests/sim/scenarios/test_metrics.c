@@ -418,6 +418,65 @@ void test_who_leaves_its_height_is_off_and_who_is_still_on_its_way_is_not(void)
     NEAR(0.1, 0.0, value(METRIC_HIGHEST_MM)); /* above the highest one ordered */
 }
 
+void test_errors_are_of_the_reference_in_force_and_the_way_to_another_one_is_none(void)
+{
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    go(8.0, 0.6);
+    metrics_order(&record, 8.0, 1.5); /* 0.9 m: as a fault it would be off course */
+    go(10.0, 1.5);
+    go(LAND_S, 1.52);
+    TEST_ASSERT_TRUE(value(METRIC_HOVER_RMS_MM) > 5.0 && value(METRIC_HOVER_RMS_MM) < 20.0);
+    TEST_ASSERT_TRUE(value(METRIC_HOVER_MEAN_ERROR_MM) > 0.0);
+    NEAR(0.1, 20.0, value(METRIC_MAX_ERROR_MM));
+    TEST_ASSERT_FALSE(found.failed);
+    setUp(); /* and who does not follow is off */
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    go(7.0, 0.6);
+    metrics_order(&record, 7.0, 1.5);
+    go(LAND_S, 0.6);
+    NEAR(0.1, 900.0, value(METRIC_MAX_ERROR_MM));
+    TEST_ASSERT_TRUE(found.failed);
+}
+
+void test_the_same_reference_again_is_no_other_one_and_without_one_nothing_is_off(void)
+{
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    go(6.5, 0.6);
+    metrics_order(&record, 6.5, 0.6);
+    go(7.0, 0.7);
+    NEAR(0.2, 100.0, value(METRIC_MAX_ERROR_MM));
+    metrics_order(&record, 7.0, 0.0);
+    go(9.0, 0.0);
+    go(18.0, 0.0);
+    NEAR(0.2, 100.0, value(METRIC_MAX_ERROR_MM));
+    TEST_ASSERT_FALSE(found.failed);
+}
+
+void test_who_is_always_on_his_way_has_no_error_and_no_recovery(void)
+{
+    metrics_begin(&record, 0.6, true, LAND_S);
+    go(1.0, 0.0);
+    for (int i = 0; i < 5; i++) {
+        metrics_order(&record, time_s() + 0.02, i % 2 == 0 ? 0.7 : 0.6);
+        go(5.0 + 4.0 * i, 0.6);
+    }
+    TEST_ASSERT_TRUE(isnan(value(METRIC_HOVER_RMS_MM)));
+    TEST_ASSERT_TRUE(isnan(value(METRIC_MAX_ERROR_MM)));
+    TEST_ASSERT_TRUE(isnan(value(METRIC_RECOVERY_S)));
+    TEST_ASSERT_TRUE(isnan(value(METRIC_UNDERSHOOT_MM)));
+}
+
+void test_a_figure_that_needs_a_plan_is_none_of_those_that_follow_from_the_flight(void)
+{
+    TEST_ASSERT_TRUE(metrics_needs_plan(METRIC_RISE_TIME_S));
+    TEST_ASSERT_TRUE(metrics_needs_plan(METRIC_GROUND_CONTACTS));
+    TEST_ASSERT_FALSE(metrics_needs_plan(METRIC_LANDED_UNORDERED));
+    TEST_ASSERT_FALSE(metrics_needs_plan(METRIC_HOVER_RMS_MM));
+}
+
 void test_on_the_way_to_a_lower_reference_the_supervisor_may_take_over(void)
 {
     go(1.0, 0.0);
