@@ -132,6 +132,17 @@ static void bind_start(terrain_hypothesis_t *h, uint16_t mirror, float off_m)
     }
 }
 
+/* The leading mirror. left: have left a ramp, downhill. */
+static void come_down(terrain_hypothesis_t *h, uint16_t mirror, uint16_t steps, uint16_t left,
+                      const float off_m[MIRROR_COUNT])
+{
+    if (has(steps, mirror) && off_m[mirror] > 0.0F) {
+        bind_start(h, mirror, off_m[mirror]);
+    } else if (has(left, mirror)) {
+        bind_start(h, mirror, h->x[terrain_ground_of(mirror)]);
+    }
+}
+
 void terrain_ramp_settle(terrain_hypothesis_t *h, const terrain_passage_t *passage, uint16_t steps,
                          const float off_m[MIRROR_COUNT], const float fore_m[MIRROR_COUNT])
 {
@@ -140,15 +151,20 @@ void terrain_ramp_settle(terrain_hypothesis_t *h, const terrain_passage_t *passa
     const uint16_t left = passage->ramps & passage->told & (uint16_t) ~(h->ramps | steps);
     const bool downhill = nose_first == (h->x[TERRAIN_SLOPE] < 0.0F);
 
+    uint16_t lead = MIRROR_COUNT;
+
     bind_plane(h, passage, row, fore_m);
-    for (uint16_t place = 1U; place < MIRROR_COUNT; ++place) {
-        if (has(left, row[place]) && !has(h->ramps, row[place - 1U])) {
-            bind_level(h, row[place], row[place - 1U]);
+    for (uint16_t place = 0U; place < MIRROR_COUNT; ++place) {
+        const uint16_t mirror = row[place];
+
+        if (!has(passage->told, mirror)) {
+            continue;
         }
-    }
-    if (has(steps, row[0]) && off_m[row[0]] > 0.0F) {
-        bind_start(h, row[0], off_m[row[0]]);
-    } else if (has(left, row[0]) && downhill) {
-        bind_start(h, row[0], h->x[terrain_ground_of(row[0])]);
+        if (lead == (uint16_t)MIRROR_COUNT) {
+            come_down(h, mirror, steps, downhill ? left : 0U, off_m);
+        } else if (has(left, mirror) && !has(h->ramps, lead)) {
+            bind_level(h, mirror, lead);
+        }
+        lead = mirror;
     }
 }

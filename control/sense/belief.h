@@ -49,7 +49,7 @@ static inline float belief_of_none(const belief_t *belief, uint16_t mirrors)
 typedef struct {
     float no_step; /* a mirror is honest, and the ground did not step under most of the honest ones: then the
                     * heights show how the vehicle moved. One that stands shows no motion: about 0 */
-    float still;   /* it has not moved since the scan before: stands or hangs, also if the accelerometer lies */
+    float still; /* it has not moved since the scan before: stands or hangs, also if the accelerometer lies */
     float stands, held, felt_lies; /* kinds of motion: BELIEF_STANDS, BELIEF_HELD, BELIEF_FELT_LIES */
 } belief_motions_t;
 

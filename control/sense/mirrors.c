@@ -197,8 +197,8 @@ static uint16_t weigh(float weights[MIRROR_COUNT], const mirrors_t *mirrors, con
     return left_out;
 }
 
-/* no_step: probability that the heights show how the vehicle moved; 0: the scan tells nothing, or was held up,
- * so that nothing is known of the motion that it shows. Numbers go on after 65535 at 1. */
+/* no_step: probability that the heights show how the vehicle moved; 0: the scan tells nothing, or was held
+ * up, so that nothing is known of the motion that it shows. Numbers go on after 65535 at 1. */
 static void number_ground(mirrors_t *mirrors, float no_step)
 {
     if (mirrors->ground == 0U || no_step <= AGREE) {

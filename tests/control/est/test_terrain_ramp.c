@@ -151,6 +151,23 @@ void test_what_comes_down_near_the_ground_of_the_start_stands_on_it(void)
     }
 }
 
+/* LAYOUT TWO: the front mirror between them tells nothing, and its ground is not known. */
+void test_a_mirror_that_tells_nothing_is_not_in_the_row(void)
+{
+    const uint16_t two = BIT(MIRROR_FORE) | BIT(MIRROR_AFT);
+    terrain_passage_t passage = going(0.3F, 0.1F, BIT(MIRROR_AFT));
+
+    passage.told = two;
+    TEST_ASSERT_TRUE(terrain_ramp_prior(&passage, 0U) > 0.2F); /* it follows the fore one off the ramp */
+    stand_at(-0.4F, 0.25F, 0.24F);
+    h.ramps = 0U;
+    terrain_ramp_settle(&h, &passage, 0U, no_step_m, fore_m);
+    TEST_ASSERT_TRUE(h.share > 0.7F);
+    TEST_ASSERT_EQUAL_FLOAT(-0.4F, h.x[terrain_ground_of(MIRROR_FRONT)]);
+    TEST_ASSERT_FLOAT_WITHIN(0.008F, 0.0F,
+                             h.x[terrain_ground_of(MIRROR_FORE)] - h.x[terrain_ground_of(MIRROR_AFT)]);
+}
+
 void test_what_steps_down_elsewhere_stands_where_it_is(void)
 {
     static const float off_m[MIRROR_COUNT] = {[MIRROR_FORE] = 0.2F};
