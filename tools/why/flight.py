@@ -149,8 +149,8 @@ def spans_of(flight, aloft_m=ALOFT_M):
 def begins_takeoff(flight, k):
     """Whether row k is the first one of a take-off. Such a row stands behind one of the ground, or the recorder begins with it: it keeps
     no rows of the ground. A full ring has lost its first row, and a log may be cut. So the row must show what the recorder's first row
-    always shows (firmware/flight_recorder.c): the latest scan and the latest frame, whenever they came. Elsewhere few rows of law EST
-    show both, every fifth row of the other laws does, and every second one of RATE SLOW: so often a cut within a take-off is not seen."""
+    always shows (firmware/flight_recorder.c): the latest scan and the latest frame, whenever they came. A few rows elsewhere show both too
+    (docs/why.md, logs that begin in the air): so often a cut within a take-off is not seen."""
     state, t_s = flight.column["state"], flight.t_s
     if state[k] != "TAKEOFF" or k > 0 and state[k - 1] != "GROUND":
         return False
