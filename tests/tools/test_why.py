@@ -133,6 +133,38 @@ class Short(OfTenSeconds):
         self.refused(path, "any.csv", "any.csv/no.png")
 
 
+class BegunInTheAir(OfTenSeconds):
+    """Logs that do not hold the take-off, or not all of it."""
+
+    def test_of_a_healthy_log_that_begins_in_the_air_nothing_is_named_whatever_law_flew_it(self):
+        wide = {"USAT": 3.0, "DSAT": 3.0}
+        for number, law_of in enumerate(({"LAW": "EST"}, {"LAW": "PIDT"}, planted.PID_TUNED | wide | {"LAW": "PID"})):
+            with self.subTest(law_of["LAW"]):
+                path = self.short("nothing", number, settings=planted.plan_of("nothing", SEED, number).settings | law_of)
+                planted.cut(path, 3.0)
+                case, found = why.ask(path, PROGRAM)
+                self.assertEqual(why.verdict(found), [])
+                self.assertGreater(case.model.linear_figure("authority"), 0.8)      # the thrust does what it does on other vehicles
+
+    def test_of_a_healthy_flight_of_a_minute_whose_beginning_the_ring_has_lost_nothing_is_named(self):
+        console = self.dir / "minute.log"
+        subprocess.run([PROGRAM, "fly", "hover-60s", "--set", "LAW=EST", "--set", "LAYOUT=THREE", "--log", console], check=False,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        case, found = why.ask(console, PROGRAM)
+        self.assertEqual(len(case.flight.t_s), flight.RING_ROWS)
+        self.assertEqual(why.verdict(found), [])
+
+    def test_a_take_off_of_est_that_lacks_its_first_rows_does_not_tell_grav(self):
+        path = self.short("nothing", settings=planted.plan_of("nothing", SEED, 0).settings | {"LAW": "EST"}, csv=False)
+        self.assertTrue(math.isfinite(law.of(flight.read(path, PROGRAM)).first_n))
+        lines = path.read_text(encoding="utf-8").splitlines()
+        path.write_text("\n".join([lines[0], *lines[13:]]) + "\n", encoding="utf-8")
+        seen = flight.read(path, PROGRAM)
+        self.assertEqual(seen.column["state"][0], "TAKEOFF")
+        self.assertTrue(math.isnan(law.of(seen).first_n))
+        self.assertIsNone(ground.takeoff_s(seen, seen.spans[0][0]))
+
+
 class Gains(OfTenSeconds):
     """As the firmware tells them, by many replays. `make soak` asks these."""
 
@@ -189,6 +221,13 @@ class Planted(Flights):
                                                  ("ground", "ground", 9, "dev-1", 0.98)):
             with self.subTest(cause):
                 self.assertEqual(self.first(cause, number, seed, share)[0], [kind])
+
+    def test_causes_are_named_in_logs_that_begin_in_the_air(self):
+        for cause, kind in (("axes", "axes"), ("tugs", "ropes"), ("cold", "cold"), ("rough", "floor"), ("vibration", "vibration")):
+            with self.subTest(cause):
+                path = self.flown(cause, 0, SEED, 0.85)
+                planted.cut(path, 5.0)
+                self.assertEqual(why.verdict(why.ask(path, PROGRAM)[1])[:1], [kind])
 
     def test_of_three_mirrors_one_two_or_all_blocked_are_named(self):
         for number, share in ((1, 0.1), (2, 0.5), (4, 0.75)):
@@ -425,6 +464,23 @@ class Likelihood(unittest.TestCase):
         heights = moved[span.is_height & (span.time_s > 5.2)]
         self.assertTrue((numpy.diff(heights) > 0.0).all())
 
+    def test_a_span_begins_when_the_commands_before_it_are_known_and_no_earlier_push_is_counted(self):
+        count = 400
+        t_s = 0.025 * numpy.arange(count)
+        column = {name: numpy.zeros(count) for name in flight.NEEDED} | {"t_s": t_s, "meas_m": numpy.full(count, 0.6), "thrust_n": numpy.full(count, 7.0)}
+        for before, begin in (("FLYING", vehicle.LEAD_S), ("GROUND", 0.5)):
+            column["state"] = numpy.array([before] + ["FLYING"] * (count - 1))
+            seen = flight.Flight("x", column, numpy.ones(count, bool), t_s, numpy.ones(count, bool), 0.0, [])
+            span = vehicle.span_of(seen, 0.5, 9.0)
+            self.assertAlmostEqual(span.begin, begin)
+            moved = vehicle.response(span, numpy.where(span.grid_s < begin - vehicle.STEP_S, 1e3, 0.0), 2.0)
+            self.assertEqual(float(numpy.abs(moved).max()), 0.0)
+
+    def test_older_rays_see_the_motion_from_their_own_first_instant_on(self):
+        older = vehicle.changed(dataclasses.replace(self.span(), free_s=0.0), 0.1)
+        self.assertLess(older.free_s, older.ray_s[0])
+        self.assertEqual(vehicle.changed(dataclasses.replace(self.span(), free_s=-1.0), 0.1).free_s, -1.0)
+
     def test_more_ground_effect_lifts_off_earlier(self):
         span = self.span()
         span.height_m = numpy.zeros(len(span.grid_s))
@@ -465,7 +521,7 @@ class Law(unittest.TestCase):
         count = len(thrust)
         t_s = 0.1 * numpy.arange(count)
         column = {"t_s": t_s, "meas_m": numpy.zeros(count) if height is None else height, "ref_m": numpy.full(count, 0.6), "thrust_n": thrust,
-                  "state": numpy.array(["TAKEOFF"] * count), "limit": numpy.array([""] * count), "doubt": numpy.array([""] * count)}
+                  "state": numpy.array(["GROUND"] + ["TAKEOFF"] * (count - 1)), "limit": numpy.array([""] * count), "doubt": numpy.array([""] * count)}
         return flight.Flight("x", column, numpy.ones(count, bool), t_s, numpy.ones(count, bool), 0.0, [])
 
     def test_pidt_that_swings_has_its_gain_lowered_and_one_that_is_calm_has_not(self):
@@ -501,6 +557,31 @@ class Reader(unittest.TestCase):
         column = {"t_s": t_s, "meas_m": numpy.full(count, 0.6), "state": numpy.array(["FLYING"] * count)}
         seen = flight.Flight("x", column, numpy.ones(count, bool), t_s - 0.07, numpy.ones(count, bool), 0.0, [])
         self.assertEqual(len(flight.spans_of(seen)), 2)
+
+    def rows(self, states, t_s=None, ring=True, scanned=(0,), felt=(0,)):
+        count = len(states)
+        rays, new = numpy.full(count, math.nan), numpy.zeros(count, bool)
+        rays[list(scanned)], new[list(felt)] = 8.0, True
+        t_s = 0.025 * numpy.arange(count) if t_s is None else numpy.array(t_s)
+        return flight.Flight("x", {"t_s": t_s, "state": numpy.array(states)}, new, t_s, new, 0.0, [], {"mf_rays": rays}, ring)
+
+    def test_a_take_off_begins_behind_a_row_of_the_ground_or_with_the_row_that_the_recorder_begins_with(self):
+        behind = ["GROUND", "TAKEOFF", "TAKEOFF", "FLYING"]
+        self.assertEqual(list(flight.takeoffs(self.rows(behind))), [False, True, True, False])
+        first = ["TAKEOFF", "TAKEOFF", "FLYING"]
+        for seen, begun in ((self.rows(first), True), (self.rows(first, ring=False), False), (self.rows(first, scanned=()), False),
+                            (self.rows(first, felt=()), False), (self.rows(["TAKEOFF"] * flight.RING_ROWS), False)):
+            self.assertEqual(bool(flight.takeoffs(seen)[0]), begun)
+
+    def test_a_second_flight_that_the_recorder_has_begins_behind_its_pause_on_the_ground(self):
+        states, t_s = ["FLYING", "GROUND", "TAKEOFF", "FLYING"], [0.0, 0.025, 9.0, 9.025]
+        self.assertTrue(flight.takeoffs(self.rows(states, t_s, scanned=(2,), felt=(2,)))[2])
+        self.assertFalse(flight.takeoffs(self.rows(states, t_s, scanned=(3,), felt=(2,)))[2])
+
+    def test_the_commands_before_a_log_are_known_when_it_begins_on_the_ground_and_not_when_it_begins_in_the_air_or_behind_lost_rows(self):
+        self.assertEqual(flight.commands_since(self.rows(["GROUND", "TAKEOFF", "FLYING"]), 0.05), -math.inf)
+        self.assertEqual(flight.commands_since(self.rows(["FLYING"] * 3), 0.05), 0.0)
+        self.assertEqual(flight.commands_since(self.rows(["GROUND", "FLYING", "FLYING"], [0.0, 2.0, 2.025]), 2.025), 2.0)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""acceptance.py [--seed N] [--each N] [--kinds N] [--healthy N] [--strengths N] [--table FILE...]: does `why` find causes that nobody told it?
+"""acceptance.py [--seed N] [--each N] [--kinds N] [--healthy N] [--strengths N] [--cut S] [--table FILE...]: does `why` find causes that nobody told it?
 
 Draws kinds of causes, plants each in the flights of drawn vehicles (planted.py), as strong as its range has it, and asks `why`, which
 sees the logs alone. Prints each flight, what was taken for what, and the rates with their 95 % bounds (Clopper and Pearson). A cause
@@ -7,7 +7,8 @@ that is no stronger than what healthy vehicles, air and noise make is flown too,
 
 A must is a share, and the words are those of tools/campaign/rate.py: SHOWN, the bounds lie at it or above; MISSED, they lie below it;
 OPEN, so many flights do not tell. docs/why.md has the words that this prints. --strengths N: in place of that N flights of each
-third of each range, and how often the first guess was right there; --table: the same of what earlier runs printed.
+third of each range, and how often the first guess was right there; --table: the same of what earlier runs printed. --cut S: no log has
+the first S seconds of its flight. Causes that only the beginning tells are not drawn then.
 Exit status: 0; 1 a must is MISSED, or a log took too long; 2 usage.
 """
 import argparse
@@ -33,6 +34,7 @@ ROOT = Path(__file__).resolve().parents[2]
 # Two sorts of one cause: their sentence tells them apart.
 SORTS = {"colours": "floor", "rough": "floor", "blocked": "rays", "lost": "rays", "rope": "ropes", "tugs": "ropes"}
 KINDS = sorted({SORTS.get(name, name) for name in planted.CAUSES})
+OF_THE_BEGINNING = {"grav"}     # law EST uses GRAV in its first command only
 FIRST_MUST, TWO_MUST, HEALTHY_MUST = 24 / 30, 28 / 30, 9 / 10
 SECONDS_MOST = 60.0
 LINE = re.compile(r"(?P<mark>[ !~]) (?P<sort>\w+) +\d+ (?P<value>[\d.e-]+)")
@@ -63,20 +65,22 @@ class Told:
         return f"{mark} {self.sort:11} {self.number:3} {strength:13} {self.seconds:5.1f} s  {said}"
 
 
-def one(program, seed, sort, number, share=None):
+def one(program, seed, cut_s, sort, number, share=None):
     plan = planted.plan_of(sort, seed, number, share)
     with tempfile.TemporaryDirectory(prefix="plomada-") as scratch:
         path = Path(scratch, "flight.csv")
         if not planted.fly(program, plan, path):
             return Told(sort, number, plan, [], [], (), 0.0)
+        if cut_s > 0.0:
+            planted.cut(path, cut_s)
         begun = time.process_time()
         _, found = why.ask(path, program)
         mirrors = found["rays"].words.get("mirrors", ()) if "rays" in found else ()
         return Told(sort, number, plan, why.verdict(found), why.guesses(found), mirrors, time.process_time() - begun)
 
 
-def drawn_kinds(seed, count):
-    return random.Random(f"kinds {seed}").sample(KINDS, min(count, len(KINDS)))
+def drawn_kinds(seed, count, kinds):
+    return random.Random(f"kinds {seed}").sample(kinds, min(count, len(kinds)))
 
 
 def drawn_work(seed, kinds, each, healthy):
@@ -93,9 +97,9 @@ def drawn_work(seed, kinds, each, healthy):
     return work + [("nothing", number, None) for number in range(healthy)]
 
 
-def results(program, seed, work):
+def results(program, seed, work, cut_s=0.0):
     with concurrent.futures.ProcessPoolExecutor(len(os.sched_getaffinity(0))) as pool:
-        futures = [pool.submit(one, program, seed, *job) for job in work]
+        futures = [pool.submit(one, program, seed, cut_s, *job) for job in work]
         for done in concurrent.futures.as_completed(futures):
             yield done.result()
 
@@ -139,6 +143,7 @@ def read_arguments(argv):
     parser.add_argument("--each", type=int, default=3, help="flights of each kind that show it (3)")
     parser.add_argument("--healthy", type=int, default=10, help="flights without a cause (10)")
     parser.add_argument("--strengths", type=int, default=0, help="the table of strengths, with so many flights of each third")
+    parser.add_argument("--cut", type=float, default=0.0, metavar="S", help="seconds of the flight that each log has lost (0)")
     parser.add_argument("--table", type=Path, nargs="+", metavar="FILE", help="the table of the flights that earlier runs printed, saved in FILE")
     parser.add_argument("--program", type=Path, default=ROOT / "build/plomada")
     return parser.parse_args(argv)
@@ -152,10 +157,10 @@ def main(argv=None):
     seed = rate.drawn_seed() if arguments.seed is None else arguments.seed
     if arguments.strengths:
         return strengths(arguments.program, seed, arguments.strengths)
-    kinds = drawn_kinds(seed, arguments.kinds)
+    kinds = drawn_kinds(seed, arguments.kinds, [kind for kind in KINDS if arguments.cut <= 0.0 or kind not in OF_THE_BEGINNING])
     print(f"seed {seed}: {', '.join(kinds)}")
     told = []
-    for result in results(arguments.program, seed, drawn_work(seed, kinds, arguments.each, arguments.healthy)):
+    for result in results(arguments.program, seed, drawn_work(seed, kinds, arguments.each, arguments.healthy), arguments.cut):
         told.append(result)
         print(result.line(), flush=True)
     shown = [each for each in told if each.sort != "nothing" and each.plan.shown]

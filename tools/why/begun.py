@@ -5,6 +5,7 @@ integral has gathered since: three figures, found by least squares from the firs
 """
 import numpy
 
+import flight as flights
 from law import CUT_N, FAR_M
 
 RELEASED, RAMP_N_PER_S = 0.68, 4.0      # of GRAV: where EST's take-off begins, and how fast it goes on (control/est/lift_off.c)
@@ -34,7 +35,7 @@ def grav_n(flight, law):
 
 def by_least_squares(flight, law):
     c, t_s = flight.column, flight.t_s
-    starts = (c["state"] == "TAKEOFF") & (c["thrust_n"] > 0.5)
+    starts = flights.takeoffs(flight) & (c["thrust_n"] > 0.5)
     first = t_s[starts][0]
     early = flight.new & numpy.isin(c["state"], ("TAKEOFF", "FLYING")) & (t_s >= first) & (t_s < first + BEGINNING_S) & (c["ref_m"] > 0.0)
     at = numpy.flatnonzero(early)

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy
 
 import begun
+import flight as flights
 
 KNOT_S = 4.0                    # the slow thrust: straight lines between knots
 SLOW_N = {True: 0.1, False: 0.01}       # rms of it: what EST learned from accelerations that a log has in part; of PIDT all is in the log, to a millimetre
@@ -86,7 +87,9 @@ def of(flight, program, law):
     """Settings; None: the log does not tell, or another law flew it, whose gains the thrusts tell better. Of a PIDT that flew before the
     log begins, the integral and the swings until then are not known; EST's own memory is short."""
     rows = usable(flight)
-    if rows.sum() < LEAST_ROWS or not (law.estimator or numpy.isfinite(law.first_n)):
+    if rows.sum() < LEAST_ROWS:
+        return None
+    if not law.estimator and numpy.isfinite(flights.commands_since(flight, flight.t_s[rows][0])):
         return None
     with tempfile.TemporaryDirectory(prefix="plomada-") as scratch:
         told = found(Replayed(flight, program, Path(scratch, "flight.csv"), law.estimator), rows, law)

@@ -25,6 +25,7 @@ ALOFT_M = 0.07
 LEAST_S, LEAST_HEIGHTS = 1.5, 12        # of a flight: less tells nothing of the vehicle
 SPAN_S = 1.5                    # of a span
 GAP_S = 0.5                     # rows are missing
+RING_ROWS = 1250                # of the recorder: docs/operator.md, flight recorder
 
 
 @dataclass
@@ -37,6 +38,7 @@ class Flight:
     late_s: float               # a row shows what came up to twice so long before it
     spans: list                 # [(begin, end)] in the air
     beams: dict = field(default_factory=dict)   # columns of single mirrors, where the log has them
+    ring: bool = False          # of the chip's recorder, which keeps flights only, and the latest rows
 
     @property
     def t_s(self):
@@ -104,7 +106,7 @@ def flight_of(path, found):
     late_s = flight_log.PC_ROW_S / 2.0 if found.kind == "flight" else 0.0
     felt = ~numpy.isnan(column["up_mps2"])
     beams = {name: numpy.array(found.columns[name]) for name in recording.BEAM_COLUMNS if name in found.columns}
-    flight = Flight(Path(path).stem, column, new, rays_s, felt, late_s, [], beams)
+    flight = Flight(Path(path).stem, column, new, rays_s, felt, late_s, [], beams, found.kind == "recorder")
     flight.spans = spans_of(flight)
     if flight.seconds() < LEAST_S and not (column["ref_m"] > 0.0).any():
         raise Unfit(f"{path}: no flight: {flight.seconds():.1f} s in the air, and no reference")
@@ -142,3 +144,33 @@ def spans_of(flight, aloft_m=ALOFT_M):
     if begin is not None:
         found.append((begin, t_s[-1]))
     return [(a, b) for a, b in found if b - a >= SPAN_S]
+
+
+def begins_takeoff(flight, k):
+    """Whether row k is the first one of a take-off. Such a row stands behind one of the ground, or the recorder begins with it: it keeps
+    no rows of the ground. A full ring has lost its first row, and a log may be cut. So the row must show what the recorder's first row
+    always shows (firmware/flight_recorder.c): the latest scan and the latest frame, whenever they came. A few rows elsewhere show both too
+    (docs/why.md, logs that begin in the air): so often a cut within a take-off is not seen."""
+    state, t_s = flight.column["state"], flight.t_s
+    if state[k] != "TAKEOFF" or k > 0 and state[k - 1] != "GROUND":
+        return False
+    if k > 0 and t_s[k] - t_s[k - 1] <= GAP_S:
+        return True
+    scanned = any(not math.isnan(rays[k]) for name, rays in flight.beams.items() if name.endswith("_rays"))
+    return bool(flight.ring and (k > 0 or len(t_s) < RING_ROWS) and flight.felt[k] and scanned)
+
+
+def takeoffs(flight):
+    """Rows of those take-offs whose beginning is in the log."""
+    begun = numpy.zeros(len(flight.t_s), bool)
+    for k in numpy.flatnonzero(flight.column["state"] == "TAKEOFF"):
+        begun[k] = k > 0 and begun[k - 1] or begins_takeoff(flight, k)
+    return begun
+
+
+def commands_since(flight, at_s):
+    """Since when the log has every command until at_s. -inf: since the vehicle stood on the ground, where none is given."""
+    torn = numpy.flatnonzero(numpy.diff(flight.t_s[flight.t_s <= at_s]) > GAP_S)
+    first = int(torn[-1]) + 1 if len(torn) else 0
+    grounded = flight.column["state"][first] == "GROUND" or begins_takeoff(flight, first)
+    return -math.inf if grounded else float(flight.t_s[first])

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy
 
+import flight as flights
 from flight import flight_log
 
 KNOT_S = 4.0                    # the slow thrust: straight lines between knots
@@ -32,7 +33,7 @@ class Law:
     at_least: float
     range_n: tuple
     stays_s: list               # how long the thrust stayed at either, each time
-    first_n: float              # thrust as the take-off begins
+    first_n: float              # thrust as the take-off begins; NaN: the log does not hold that
     begun_n: float              # slow thrust as the flight begins
 
 
@@ -56,7 +57,7 @@ def of(flight):
     c, t_s = flight.column, flight.t_s
     flying = (c["state"] == "FLYING") & (c["ref_m"] > 0.0)
     estimator = bool(numpy.mean(~numpy.isnan(c["innov_m"][flying])) > 0.5) if flying.any() else True
-    takeoff = numpy.flatnonzero((c["state"] == "TAKEOFF") & (c["thrust_n"] > 0.5))
+    takeoff = numpy.flatnonzero(flights.takeoffs(flight) & (c["thrust_n"] > 0.5))
     first_n = float(c["thrust_n"][takeoff[0]]) if len(takeoff) else numpy.nan
     law = Law(estimator, int(flying.sum()), 0.0, 0.0, (9.0, 9.0), 0.0, 0.0, 0.0, (0.0, 0.0), [], first_n, numpy.nan)
     if law.rows < LEAST:

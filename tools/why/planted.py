@@ -258,3 +258,12 @@ def fly(program, plan, path):
         if not plan.csv:
             subprocess.run([program, "log", str(console), "--force"], check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
     return path.exists()
+
+
+def cut(path, after_s):
+    """Leaves out all rows until after_s after the take-off's first row, as a ring does that was too small for the flight."""
+    titles, *rows = path.read_text(encoding="utf-8").splitlines()
+    time_at, state_at = (titles.split(",").index(name) for name in ("t_s", "state"))
+    begin_s = next((float(row.split(",")[time_at]) for row in rows if row.split(",")[state_at] == "TAKEOFF"), 0.0)
+    kept = [row for row in rows if float(row.split(",")[time_at]) >= begin_s + after_s]
+    path.write_text("\n".join([titles, *kept]) + "\n", encoding="utf-8")

@@ -18,7 +18,7 @@ import flight as flights
 import model
 
 G, STEP_S = model.GRAVITY_MPS2, model.STEP_S
-LEAD_S = 1.0                    # of the commands before a span
+LEAD_S = 1.0                    # of the commands before a span: seven lags of the slowest motors that are drawn, 0.15 s (tools/why/planted.py)
 EVENT_S = 0.0025
 FIRST = (1.0, 1.0)              # height and speed at the beginning of a span are not known, rms
 LOUD = 2.0                      # times the turbulence: what a pilot's hand does
@@ -63,7 +63,7 @@ class Span:
     sorted: numpy.ndarray = None
     log_middle: float = 0.0             # middle of the flight: growth counts from there
     first: tuple = FIRST                # height and speed as the span begins, rms
-    free_s: float = -math.inf           # until then the ground carries the vehicle, and no push moves it
+    free_s: float = -math.inf           # no push from before it is counted: what it made is in `first`, or the ground carried the vehicle
 
     def order(self):
         times = numpy.concatenate((self.ray_s, self.frame_s))
@@ -71,7 +71,7 @@ class Span:
         self.time_s = times[self.sorted]
         self.is_height = (numpy.arange(len(times)) < len(self.ray_s))[self.sorted]
         rounded = numpy.round(self.time_s / EVENT_S).astype(int)
-        self.steps = numpy.diff(rounded, prepend=rounded[0])
+        self.steps = numpy.diff(rounded, prepend=rounded[:1])
 
     def merged(self, heights, felts):
         """Columns of heights and of accelerations in the order of the events."""
@@ -79,7 +79,9 @@ class Span:
 
 
 def span_of(flight, begin, end):
+    """It begins where the commands of LEAD_S before it are known. Which height and speed the vehicle has there is not known, wherever that is."""
     c, t_s = flight.column, flight.t_s
+    begin = min(max(begin, flights.commands_since(flight, begin) + LEAD_S), end)
     grid = numpy.arange(begin - LEAD_S, end + STEP_S, STEP_S)
     at = numpy.clip(numpy.searchsorted(t_s - flight.late_s, grid + STEP_S / 2, "right") - 1, 0, len(t_s) - 1)
     thrust = numpy.where(grid < t_s[0], 0.0, c["thrust_n"][at])
@@ -94,6 +96,7 @@ def span_of(flight, begin, end):
                 numpy.interp(grid, flight.rays_s[new], c["meas_m"][new]), ray_s, c["meas_m"][rays],
                 numpy.interp(ray_s, t_s - 0.05, roll), numpy.interp(ray_s, t_s - 0.05, pitch), felt_s[felt], c["up_mps2"][felt], t_s - 0.05, roll, pitch)
     span.order()
+    span.free_s = begin - STEP_S        # a push is a straight line between two steps: the first event lies behind the first step
     return span
 
 
@@ -105,6 +108,7 @@ def changed(span, late_s=0.0, blind=()):
     other = replace(span, ray_s=span.ray_s[kept] - late_s, ray_m=span.ray_m[kept], roll=span.roll[kept], pitch=span.pitch[kept])
     other.order()
     other.log_middle = span.log_middle
+    other.free_s = min([span.free_s, *(other.time_s[:1] - STEP_S)])     # older rays: the motion that they saw begins sooner
     return other
 
 
@@ -136,6 +140,7 @@ def errors_of(f, begins=FIRST):
     if "neutral" in f:
         loop = {"climb_lag": 1.0 / f["damping"], "damping": AIR_DAMPING, "climb_rate": CLIMB_RATE, "climb_wander": CLIMB_WANDER_MPS}
         a, q, first, felt = model.climb_errors(f | loop)
+        first[[0, 1], [0, 1]] = numpy.square(begins)        # no better known than with THRUST
         return a, q, first, felt, numpy.eye(len(a))[0]
     d, decay, terrain = f["damping"], 1.0 / f["turbulence_tau"], f.get("terrain", 0.0)
     a = numpy.array([[0.0, 1.0, 0.0, 0.0], [0.0, -d, 1.0, 0.0], [0.0, 0.0, -decay, 0.0], [0.0, 0.0, 0.0, -1.0 / TERRAIN_TAU_S]])

@@ -37,7 +37,7 @@ def effect_columns(span, f):
 
 def takeoff_s(flight, span_begin_s):
     """When the thrust of this take-off began; None: the log has it not."""
-    rows = numpy.flatnonzero((flight.column["state"] == "TAKEOFF") & (flight.t_s > span_begin_s - TAKEOFF_S) & (flight.t_s < span_begin_s))
+    rows = numpy.flatnonzero(flights.takeoffs(flight) & (flight.t_s > span_begin_s - TAKEOFF_S) & (flight.t_s < span_begin_s))
     return float(flight.t_s[rows[0]]) if len(rows) else None
 
 
