@@ -26,6 +26,7 @@
 #define BIAS_DRIFT_MPS2 0.095F   /* fitted; m/s2 per root second */
 #define TERRAIN_DRIFT_MPS 0.053F /* fitted; m/s per root second */
 #define OVER_DRIFT_MPS2 0.02F    /* chosen: of the bias, while ramps are told from it; warmth is slower */
+#define LEAN_MOST 1.0F           /* 45 degrees: beyond, tilt.c cuts the thrust */
 #define NO_ACC_DRIFT_MPS2 \
     0.4F /* of turbulence of 0.2 m/s2 that lasts 0.5 s (quadrotor.c): 0.2 sqrt(2 / 0.5) */
 
@@ -332,7 +333,7 @@ height_outcome_t estimator_fuse_height(estimator_t *e, const altitude_t *altitud
 terrain_heights_t estimator_heights(const estimator_t *e, const terrain_sight_t *sight, uint32_t rays_us)
 {
     const float pitch_rad = frame_of_rays(e, rays_us)->pitch_rad;
-    terrain_heights_t heights = {.lean = tanf(pitch_rad),
+    terrain_heights_t heights = {.lean = between(-LEAN_MOST, tanf(pitch_rad), LEAN_MOST),
                                  .reach_m = (sight->altitude->slant_mm - sight->altitude->distance_mm) *
                                             0.001F * sinf(pitch_rad)};
 

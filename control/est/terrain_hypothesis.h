@@ -20,9 +20,8 @@
 #include "control/altitude.h"
 #include "control/est/filter.h"
 
-/* Rms of the speed over the ground that the tilt does not tell: one that is off by 0.6 degrees, for the 3 s
- * in which the air takes what it makes. */
-#define TERRAIN_WAY_MPS 0.3F
+/* Rms of the speed over the ground that the tilt does not tell: the seed's course is flown at that. */
+#define TERRAIN_WAY_MPS 0.4F
 #define TERRAIN_STEP_M 0.15F /* mean size of a step (Laplace), as belief_world.c */
 #define TERRAIN_OWN_M 0.006F /* noise of each mirror: BELIEF_NOISE_MM of sense/belief_density.h, fitted */
 
@@ -55,7 +54,8 @@ void terrain_hypothesis_reset_variance(terrain_hypothesis_t *hypothesis, uint16_
 void terrain_hypothesis_predict(terrain_hypothesis_t *hypothesis, const motion_t *motion, float dt_s,
                                 float bias_mps2);
 
-/* The speed over the ground, gap_s later: what the tilt has added to it, and less what the air takes. */
+/* The ramp and the way, gap_s later: what the tilt has added to the speed, which is forgotten; and a slope
+ * that bends. */
 void terrain_hypothesis_travel(terrain_hypothesis_t *hypothesis, float gained_mps, float gap_s);
 
 /* Way of the spots in gap_s, if the tilt has moved them by moved_m. */

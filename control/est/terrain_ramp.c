@@ -1,5 +1,5 @@
-/* What breaks: a direction that is wrong. A tilt that is off by a degree makes half a metre a second of the
- * speed over the ground; so the direction is a probability, and both are looked at. Without the order "all
+/* What breaks: a direction that is wrong. A tilt that is off by three degrees makes 0.3 m/s of the speed
+ * over the ground; so the direction is a probability, and both are looked at. Without the order "all
  * mirrors rise" explained every climb. */
 #include "control/est/terrain_ramp.h"
 

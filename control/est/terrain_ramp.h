@@ -2,8 +2,8 @@
  * same ground.
  *
  *   which first   the leading mirror meets a ramp by itself. The next one joins it when the one before it is
- *                 on it, and leaves it when that one has left it: fore, mirror, aft, or tail first aft to
- * fore the plane     mirrors on the ramp stand as high above each other as its slope says. One joins it where
+ *                 on it, and leaves it when that one has left it. Tail first the aft one leads
+ *   the plane     mirrors on the ramp stand as high above each other as its slope says. One joins it where
  *                 its own ground and that plane meet
  *   the level     one that leaves it stands on the ground on which those stand that left it before
  *   the start     the ground that the leading mirror comes down to is that of the start, in half of the cases

@@ -139,18 +139,33 @@ void test_a_slope_and_a_speed_that_may_both_be_anything_make_a_rise_that_may_be_
     TEST_ASSERT_FLOAT_WITHIN(1.0e-7F, 0.16F * 0.09F * 0.01F, h.p[ground][ground]);
 }
 
-/* 0.1 rad nose down for half a minute: 0.98 m/s2 for the 3 s in which the air takes it. */
-void test_the_tilt_tells_the_speed_over_the_ground_and_the_air_takes_it(void)
+/* 0.1 rad nose down for half a minute: 0.98 m/s2 for the 0.6 s in which it is forgotten. */
+void test_the_tilt_tells_how_the_speed_over_the_ground_changes_and_not_what_it_is(void)
 {
     for (int i = 0; i < 300; i++) {
         terrain_hypothesis_travel(&h, 0.098F, 0.1F);
     }
-    TEST_ASSERT_FLOAT_WITHIN(0.05F, 2.94F, h.x[TERRAIN_WAY_SPEED]);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.588F, h.x[TERRAIN_WAY_SPEED]);
     TEST_ASSERT_FLOAT_WITHIN(0.01F, TERRAIN_WAY_MPS, sqrtf(h.p[TERRAIN_WAY_SPEED][TERRAIN_WAY_SPEED]));
-    for (int i = 0; i < 30; i++) {
+    for (int i = 0; i < 6; i++) {
         terrain_hypothesis_travel(&h, 0.0F, 0.1F);
     }
-    TEST_ASSERT_FLOAT_WITHIN(0.05F, 2.94F * expf(-1.0F), h.x[TERRAIN_WAY_SPEED]);
+    TEST_ASSERT_FLOAT_WITHIN(0.03F, 0.588F * expf(-1.0F), h.x[TERRAIN_WAY_SPEED]);
+    terrain_hypothesis_travel(&h, 0.0F, 1.0F); /* a gap is longer than that */
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, h.x[TERRAIN_WAY_SPEED]);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, TERRAIN_WAY_MPS * TERRAIN_WAY_MPS,
+                             h.p[TERRAIN_WAY_SPEED][TERRAIN_WAY_SPEED]);
+}
+
+/* Else a ramp that gets steeper was followed as far as the slope was unsure, and then no more. */
+void test_a_slope_that_was_sure_is_less_so_a_second_later(void)
+{
+    h.p[TERRAIN_SLOPE][TERRAIN_SLOPE] = 0.0F;
+    for (int i = 0; i < 10; i++) {
+        terrain_hypothesis_travel(&h, 0.0F, 0.1F);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, 0.1F, h.p[TERRAIN_SLOPE][TERRAIN_SLOPE]);
+    TEST_ASSERT_EQUAL_FLOAT(1.0F, h.x[TERRAIN_SLOPE]);
 }
 
 void test_grounds_that_are_bound_are_one_and_correct_the_altitude(void)
