@@ -39,7 +39,7 @@ SECTIONS
     .cinit      : > FLASH,  PAGE = 0, ALIGN(8)
     .binit      : > FLASH,  PAGE = 0, ALIGN(8)
     .pinit      : > FLASH,  PAGE = 0, ALIGN(8)
-    .econst     : > FLASH,  PAGE = 0, ALIGN(8)
+    .econst     : >> FLASHA | FLASH, PAGE = 0, ALIGN(8)   /* sector A has little else; FLASH is left to the code */
     .switch     : > FLASH,  PAGE = 0, ALIGN(8)
     .args       : > FLASH,  PAGE = 0, ALIGN(8)
     .reset      : > RESET,  PAGE = 0, TYPE = DSECT      /* not used */

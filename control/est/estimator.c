@@ -333,7 +333,7 @@ height_outcome_t estimator_fuse_height(estimator_t *e, const altitude_t *altitud
 terrain_heights_t estimator_heights(const estimator_t *e, const terrain_sight_t *sight, uint32_t rays_us)
 {
     const float pitch_rad = frame_of_rays(e, rays_us)->pitch_rad;
-    terrain_heights_t heights = {.lean = between(-LEAN_MOST, tanf(pitch_rad), LEAN_MOST),
+    terrain_heights_t heights = {.lean = between(-LEAN_MOST, sinf(pitch_rad) / cosf(pitch_rad), LEAN_MOST),
                                  .reach_m = (sight->altitude->slant_mm - sight->altitude->distance_mm) *
                                             0.001F * sinf(pitch_rad)};
 

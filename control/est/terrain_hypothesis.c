@@ -8,9 +8,9 @@
 #include "control/between.h"
 
 #define OWN_M2 (TERRAIN_OWN_M * TERRAIN_OWN_M)
-#define EVEN_M 0.012F /* fitted: what a plane or a level is off, and the filter is too sure by */
-#define LEAN_S 0.6F   /* fitted: a tilt that is off by 3 degrees makes 1.5 m/s in 3 s, in this 0.3 m/s */
-#define BEND_2 0.1F   /* fitted: of a slope, a second; none was too sure to follow a bend */
+#define EVEN_M 0.012F /* docs/ablation.md: what a plane or a level is off, and the filter is too sure by */
+#define LEAN_S 0.6F   /* docs/ablation.md: a tilt that is off by 3 degrees makes 0.3 m/s in it */
+#define BEND_2 0.1F   /* docs/ablation.md: of a slope, a second; none was too sure to follow a bend */
 
 /* ---- one Gaussian tells two hypotheses whose means are nearer than this together */
 #define ALIKE_M 0.01F    /* two heights of a mirror: TERRAIN_OWN_M times root 2 */

@@ -88,6 +88,10 @@ class Memory(unittest.TestCase):
         self.assertGreaterEqual(self.regions[region][1], 0x80000)
         self.assertLessEqual(self.regions[region][2], 0xBFFFF)
 
+    def test_constants_begin_in_the_sector_that_the_code_does_not_use(self):
+        self.assertIn(">> FLASHA | FLASH", self.sections[".econst"])
+        self.assertNotIn("FLASHA", re.findall(r"\w+", self.sections[".text"]))
+
     def test_every_section_has_a_place_on_the_page_that_it_names(self):
         own = {name for path in product_files(".c")
                for name in re.findall(r'(?:DATA_SECTION\(\w+, |CODE_SECTION\(\w+, |section\()"([.\w:]+)"', code(path))}

@@ -130,9 +130,9 @@ class Limits(unittest.TestCase):
         size.ram_tables({path: {"data": 0, "bss": 2 * cells} for path, cells in {**self.sizes, **changes}.items()}, problems)
         return problems
 
-    def flash(self, cells):
+    def flash(self, cells, constant=0):
         problems = []
-        sizes = {"firmware/a.c": {"code": 2 * cells - 200, "constant": 100, "data": 100, "bss": 0}}
+        sizes = {"firmware/a.c": {"code": 2 * (cells - constant) - 100, "constant": 2 * constant, "data": 100, "bss": 0}}
         size.flash_table(sizes, {"firmware/a.c": dict.fromkeys(("code", "constant", "data"), 1)}, problems)
         return problems
 
@@ -148,6 +148,12 @@ class Limits(unittest.TestCase):
         room = size.region("FLASH")
         self.assertEqual(self.flash(room // 2), [])
         self.assertEqual(len(self.flash(room // 2 + 1)), 1)
+
+    def test_constants_fit_sector_a_too_and_not_more_than_it_has(self):
+        room, sector = size.region("FLASH"), size.region("FLASHA")
+        self.assertEqual(self.flash(room // 2 + 1000, 1000), [])
+        self.assertEqual(len(self.flash(room // 2 + 1001, 1000)), 1)
+        self.assertEqual(len(self.flash((room + sector) // 2 + 1, sector)), 1)
 
     def test_a_stack_needs_its_margin_and_its_interrupts(self):
         problems = []

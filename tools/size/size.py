@@ -330,8 +330,9 @@ def flash_table(m68k, avr, problems):
         row = [sum(flash(kinds) for path, kinds in sizes.items() if path.startswith(room + "/")) for sizes in (m68k, avr)]
         rows.append((f"`{room}/`", *row, max(row) // 2))
     both = [sum(row[column] for row in rows) for column in (1, 2, 3)]
+    constant = max(sum(kinds["constant"] for kinds in sizes.values()) for sizes in (m68k, avr)) // 2
     rows.append(("**all**", *both))
-    available = region("FLASH")
+    available = region("FLASH") + min(region("FLASHA"), 2 * constant)    # .econst begins in FLASHA
     limit(problems, "flash", 2 * both[2], available)
     limit(problems, "flash of the chip", 2 * both[2], CHIP_FLASH)
     return table(("room", "m68k, bytes", "AVR, bytes", "the larger, as cells"), rows)
