@@ -255,7 +255,8 @@ void terrain_begin(terrain_t *terrain, const filter_t *filter, const terrain_hei
     for (uint16_t i = 0U; i <= (uint16_t)TERRAIN_BIAS; ++i) {
         first->p[i][i] = filter->covariance[i][i];
     }
-    first->p[TERRAIN_WAY_SPEED][TERRAIN_WAY_SPEED] = TERRAIN_WAY_MPS * TERRAIN_WAY_MPS;
+    first->p[TERRAIN_GROUND_SPEED][TERRAIN_GROUND_SPEED] = TERRAIN_SPEED_UNTOLD_MPS *
+                                                           TERRAIN_SPEED_UNTOLD_MPS;
     const float middle_height_m = middle_m(heights->height_m, heights->valid);
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         const bool tells = has(heights->valid, m);

@@ -8,9 +8,9 @@
 #include "control/between.h"
 
 #define OWN_M2 (TERRAIN_OWN_M * TERRAIN_OWN_M)
-#define EVEN_M 0.012F /* docs/ablation.md: what a plane or a level is off, and the filter is too sure by */
-#define LEAN_S 0.6F   /* docs/ablation.md: a tilt that is off by 3 degrees makes 0.3 m/s in it */
-#define BEND_2 0.1F   /* docs/ablation.md: of a slope, a second; none was too sure to follow a bend */
+#define EVEN_M 0.012F /* docs/ablation.md: rms of what a ramp is off a plane, or a platform off a level */
+#define LEAN_S 0.6F   /* docs/ablation.md: time constant after which a tilt no longer tells the speed */
+#define BEND_2 0.1F   /* docs/ablation.md: variance of a slope, per second: ramps bend */
 
 /* ---- one Gaussian tells two hypotheses whose means are nearer than this together */
 #define ALIKE_M 0.01F    /* two heights of a mirror: TERRAIN_OWN_M times root 2 */
@@ -59,26 +59,27 @@ void terrain_hypothesis_travel(terrain_hypothesis_t *h, float gained_mps, float 
 {
     const float taken = at_most(gap_s / LEAN_S, 1.0F);
 
-    add(h, TERRAIN_WAY_SPEED, TERRAIN_WAY_SPEED, -taken);
-    h->x[TERRAIN_WAY_SPEED] += gained_mps;
-    h->p[TERRAIN_WAY_SPEED][TERRAIN_WAY_SPEED] += taken * (2.0F - taken) * TERRAIN_WAY_MPS * TERRAIN_WAY_MPS;
+    add(h, TERRAIN_GROUND_SPEED, TERRAIN_GROUND_SPEED, -taken);
+    h->x[TERRAIN_GROUND_SPEED] += gained_mps;
+    h->p[TERRAIN_GROUND_SPEED][TERRAIN_GROUND_SPEED] += taken * (2.0F - taken) * TERRAIN_SPEED_UNTOLD_MPS *
+                                                        TERRAIN_SPEED_UNTOLD_MPS;
     h->p[TERRAIN_SLOPE][TERRAIN_SLOPE] += BEND_2 * gap_s;
 }
 
 /* The variance of a product has a part that no derivative tells: that of a slope and a speed which may both
  * be anything. One that has just joined was on the ramp for an even share of the time. */
-static float rise_variance_m2(const terrain_hypothesis_t *h, float way_m, float gap_s, bool joins)
+static float rise_variance_m2(const terrain_hypothesis_t *h, float passed_m, float gap_s, bool joins)
 {
     const float slope = h->x[TERRAIN_SLOPE];
     const float slope_2 = h->p[TERRAIN_SLOPE][TERRAIN_SLOPE];
-    const float both_m2 = slope_2 * h->p[TERRAIN_WAY_SPEED][TERRAIN_WAY_SPEED] * gap_s * gap_s;
+    const float both_m2 = slope_2 * h->p[TERRAIN_GROUND_SPEED][TERRAIN_GROUND_SPEED] * gap_s * gap_s;
 
-    return both_m2 + (joins ? (slope * slope + slope_2) * way_m * way_m / 12.0F : 0.0F);
+    return both_m2 + (joins ? (slope * slope + slope_2) * passed_m * passed_m / 12.0F : 0.0F);
 }
 
 void terrain_hypothesis_rise(terrain_hypothesis_t *h, uint16_t ramps, float moved_m, float gap_s)
 {
-    const float way_m = terrain_hypothesis_way_m(h, moved_m, gap_s);
+    const float passed_m = terrain_hypothesis_passed_m(h, moved_m, gap_s);
     const float slope = h->x[TERRAIN_SLOPE];
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
@@ -87,9 +88,9 @@ void terrain_hypothesis_rise(terrain_hypothesis_t *h, uint16_t ramps, float move
         const uint16_t ground = terrain_ground_of(m);
 
         if ((ramps & (1U << m)) != 0U) {
-            add(h, ground, TERRAIN_SLOPE, part * way_m);
-            depend(h, ground, TERRAIN_WAY_SPEED, part * slope * gap_s);
-            h->p[ground][ground] += rise_variance_m2(h, way_m, gap_s, joins);
+            add(h, ground, TERRAIN_SLOPE, part * passed_m);
+            depend(h, ground, TERRAIN_GROUND_SPEED, part * slope * gap_s);
+            h->p[ground][ground] += rise_variance_m2(h, passed_m, gap_s, joins);
         }
     }
     h->ramps = ramps;

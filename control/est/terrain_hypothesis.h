@@ -1,14 +1,15 @@
 /* One hypothesis of terrain.h: a Kalman filter over the vehicle, the ramp and the ground under each mirror.
  *
  *   altitude  above the ground of the start; speed upwards; bias of the accelerometer: as in filter.h
- *   slope     of the ramp, uphill fore > 0: the ground rises so much a metre
- *   way       the vehicle's speed over the ground, fore > 0
+ *   slope     of the ramp: rise per metre, uphill fore > 0
+ *   ground speed   of the vehicle, horizontal, fore > 0
  *   ground    under each mirror, above the ground of the start
  *
- * The ground under a mirror on the ramp rises by the slope times the way of its spot: the vehicle's, and what
- * a tilt moves the spot by. Each has its covariance with the others (an extended Kalman filter: that product
- * is the only one). So while the aft mirror still shows level ground, all of them are known; while all are on
- * the ramp, two of them tell its slope, and the tilt, which accelerates the vehicle, its way.
+ * The ground under a mirror on the ramp rises by the slope times what its spot has passed: the ground speed,
+ * times the time, and what a tilt has moved the spot by. Each has its covariance with the others (an extended
+ * Kalman filter: that product is the only one). So while the aft mirror still shows level ground, all of them
+ * are known; while all are on the ramp, two of them tell its slope, and the tilt, which accelerates the
+ * vehicle, how its ground speed changes.
  *
  * Metres, seconds. Pure; the caller owns the state. Context: one Task. */
 #ifndef CONTROL_EST_TERRAIN_HYPOTHESIS_H
@@ -20,8 +21,8 @@
 #include "control/altitude.h"
 #include "control/est/filter.h"
 
-/* Rms of the speed over the ground that the tilt does not tell: the seed's course is flown at that. */
-#define TERRAIN_WAY_MPS 0.4F
+/* Rms of the ground speed, as far as the tilt does not tell it: the seed's course is flown at that. */
+#define TERRAIN_SPEED_UNTOLD_MPS 0.4F
 #define TERRAIN_STEP_M 0.15F /* mean size of a step (Laplace), as belief_world.c */
 #define TERRAIN_OWN_M 0.006F /* noise of each mirror: BELIEF_NOISE_MM of sense/belief_density.h, fitted */
 
@@ -30,7 +31,7 @@ typedef enum {
     TERRAIN_SPEED,
     TERRAIN_BIAS,
     TERRAIN_SLOPE,
-    TERRAIN_WAY_SPEED,
+    TERRAIN_GROUND_SPEED,
     TERRAIN_GROUND, /* of the first mirror_t; the others follow */
     TERRAIN_STATES = TERRAIN_GROUND + (int)MIRROR_COUNT
 } terrain_state_t;
@@ -54,15 +55,15 @@ void terrain_hypothesis_reset_variance(terrain_hypothesis_t *hypothesis, uint16_
 void terrain_hypothesis_predict(terrain_hypothesis_t *hypothesis, const motion_t *motion, float dt_s,
                                 float bias_mps2);
 
-/* The ramp and the way, gap_s later: what the tilt has added to the speed, which is forgotten; and a slope
- * that bends. */
+/* Slope and ground speed gap_s later. gained_mps: what the tilt has added to the speed. It is forgotten, and
+ * the slope may have bent. */
 void terrain_hypothesis_travel(terrain_hypothesis_t *hypothesis, float gained_mps, float gap_s);
 
-/* Way of the spots in gap_s, if the tilt has moved them by moved_m. */
-static inline float terrain_hypothesis_way_m(const terrain_hypothesis_t *hypothesis, float moved_m,
-                                             float gap_s)
+/* What the spots pass in gap_s, fore > 0, if the tilt moves them by moved_m. */
+static inline float terrain_hypothesis_passed_m(const terrain_hypothesis_t *hypothesis, float moved_m,
+                                                float gap_s)
 {
-    return hypothesis->x[TERRAIN_WAY_SPEED] * gap_s + moved_m;
+    return hypothesis->x[TERRAIN_GROUND_SPEED] * gap_s + moved_m;
 }
 
 /* The ground under these mirrors has risen with the ramp, for gap_s. One that was not on it before is for a

@@ -1,5 +1,5 @@
-/* What breaks: a direction that is wrong. A tilt that is off by three degrees makes 0.3 m/s of the speed
- * over the ground; so the direction is a probability, and both are looked at. Without the order "all
+/* What breaks: a direction that is wrong. A tilt that is off by three degrees makes 0.3 m/s of
+ * ground speed; so the direction is a probability, and both are looked at. Without the order "all
  * mirrors rise" explained every climb. */
 #include "control/est/terrain_ramp.h"
 
@@ -34,8 +34,8 @@ static bool has(uint16_t set, uint16_t mirror)
 terrain_passage_t terrain_ramp_passage(const terrain_hypothesis_t *h, uint16_t told, float moved_m,
                                        float gap_s)
 {
-    const float sigma_mps = sqrtf(at_least(h->p[TERRAIN_WAY_SPEED][TERRAIN_WAY_SPEED], FLT_EPSILON));
-    const float sigmas = terrain_hypothesis_way_m(h, moved_m, gap_s) / (gap_s * sigma_mps);
+    const float sigma_mps = sqrtf(at_least(h->p[TERRAIN_GROUND_SPEED][TERRAIN_GROUND_SPEED], FLT_EPSILON));
+    const float sigmas = terrain_hypothesis_passed_m(h, moved_m, gap_s) / (gap_s * sigma_mps);
 
     return (terrain_passage_t){
         .ramps = h->ramps,

@@ -20,7 +20,7 @@ void setUp(void)
     h.x[TERRAIN_SPEED] = 0.2F;
     h.x[TERRAIN_BIAS] = 0.1F;
     h.x[TERRAIN_SLOPE] = 1.0F;
-    h.x[TERRAIN_WAY_SPEED] = 0.4F;
+    h.x[TERRAIN_GROUND_SPEED] = 0.4F;
     h.p[TERRAIN_ALTITUDE][TERRAIN_ALTITUDE] = 1.0e-4F;
     h.p[TERRAIN_SPEED][TERRAIN_SPEED] = 0.04F;
     h.p[TERRAIN_BIAS][TERRAIN_BIAS] = 0.09F;
@@ -132,8 +132,8 @@ void test_a_slope_and_a_speed_that_may_both_be_anything_make_a_rise_that_may_be_
     const uint16_t ground = terrain_ground_of(FORE);
 
     h.ramps = 1U << FORE;
-    h.x[TERRAIN_SLOPE] = h.x[TERRAIN_WAY_SPEED] = 0.0F;
-    h.p[TERRAIN_WAY_SPEED][TERRAIN_WAY_SPEED] = 0.09F;
+    h.x[TERRAIN_SLOPE] = h.x[TERRAIN_GROUND_SPEED] = 0.0F;
+    h.p[TERRAIN_GROUND_SPEED][TERRAIN_GROUND_SPEED] = 0.09F;
     terrain_hypothesis_rise(&h, 1U << FORE, 0.0F, 0.1F);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, h.x[ground]);
     TEST_ASSERT_FLOAT_WITHIN(1.0e-7F, 0.16F * 0.09F * 0.01F, h.p[ground][ground]);
@@ -145,16 +145,17 @@ void test_the_tilt_tells_how_the_speed_over_the_ground_changes_and_not_what_it_i
     for (int i = 0; i < 300; i++) {
         terrain_hypothesis_travel(&h, 0.098F, 0.1F);
     }
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.588F, h.x[TERRAIN_WAY_SPEED]);
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, TERRAIN_WAY_MPS, sqrtf(h.p[TERRAIN_WAY_SPEED][TERRAIN_WAY_SPEED]));
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.588F, h.x[TERRAIN_GROUND_SPEED]);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, TERRAIN_SPEED_UNTOLD_MPS,
+                             sqrtf(h.p[TERRAIN_GROUND_SPEED][TERRAIN_GROUND_SPEED]));
     for (int i = 0; i < 6; i++) {
         terrain_hypothesis_travel(&h, 0.0F, 0.1F);
     }
-    TEST_ASSERT_FLOAT_WITHIN(0.03F, 0.588F * expf(-1.0F), h.x[TERRAIN_WAY_SPEED]);
+    TEST_ASSERT_FLOAT_WITHIN(0.03F, 0.588F * expf(-1.0F), h.x[TERRAIN_GROUND_SPEED]);
     terrain_hypothesis_travel(&h, 0.0F, 1.0F); /* a gap is longer than that */
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, h.x[TERRAIN_WAY_SPEED]);
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, TERRAIN_WAY_MPS * TERRAIN_WAY_MPS,
-                             h.p[TERRAIN_WAY_SPEED][TERRAIN_WAY_SPEED]);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, h.x[TERRAIN_GROUND_SPEED]);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, TERRAIN_SPEED_UNTOLD_MPS * TERRAIN_SPEED_UNTOLD_MPS,
+                             h.p[TERRAIN_GROUND_SPEED][TERRAIN_GROUND_SPEED]);
 }
 
 /* Else a ramp that gets steeper was followed as far as the slope was unsure, and then no more. */

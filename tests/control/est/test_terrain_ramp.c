@@ -31,8 +31,8 @@ void tearDown(void) {}
 static terrain_passage_t going(float speed_mps, float sigma_mps, uint16_t ramps)
 {
     h.ramps = ramps;
-    h.x[TERRAIN_WAY_SPEED] = speed_mps;
-    h.p[TERRAIN_WAY_SPEED][TERRAIN_WAY_SPEED] = sigma_mps * sigma_mps;
+    h.x[TERRAIN_GROUND_SPEED] = speed_mps;
+    h.p[TERRAIN_GROUND_SPEED][TERRAIN_GROUND_SPEED] = sigma_mps * sigma_mps;
     return terrain_ramp_passage(&h, ALL, 0.0F, GAP_S);
 }
 
@@ -49,7 +49,7 @@ void test_the_direction_is_as_sure_as_the_speed(void)
     TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.84F, going(0.3F, 0.3F, 0U).fore);
     TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.16F, going(-0.3F, 0.3F, 0U).fore);
     TEST_ASSERT_TRUE(going(1.0F, 0.1F, 0U).fore > 0.999F);
-    h.x[TERRAIN_WAY_SPEED] = 0.0F;
+    h.x[TERRAIN_GROUND_SPEED] = 0.0F;
     TEST_ASSERT_TRUE(terrain_ramp_passage(&h, ALL, 0.1F, GAP_S).fore > 0.99F); /* 1 m/s by the tilt */
     TEST_ASSERT_FALSE(isnan(going(1.0e6F, 0.0F, 0U).fore));
 }
