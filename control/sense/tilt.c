@@ -13,7 +13,8 @@
 #include "control/between.h"
 #include "control/credible.h"
 
-#define STEADY_MAX_RAD 0.25F /* as FOLLOWS_RAD in attitude.c; a spike or a lost frame makes one step more */
+/* Three spikes of five frames are their median: a spike less what the vehicle turns in two frames. */
+#define JUMP_RAD (ATTITUDE_SPIKE_RAD - 2.0F * ATTITUDE_STIRS_RAD)
 #define JUMPS_HELD (ATTITUDE_ROLLED_FRAMES - 1U) /* a burst of bad frames shows in as many medians */
 #define ANGLE_MAX_RAD 7.0F                       /* 2 pi, rounded up */
 #define TILT_GAP_US UINT32_C(250000) /* ten frames of 25 ms: after such a gap any tilt is accepted */
@@ -35,8 +36,8 @@ static bool turns_steadily(float accepted_rad, float before_rad, float now_rad, 
     const float step_rad = turn_rad(before_rad, now_rad);
     const float rest_rad = turn_rad(accepted_rad, now_rad) - (float)frames * step_rad;
 
-    return fabsf(step_rad) > ATTITUDE_STIRS_RAD && fabsf(step_rad) < STEADY_MAX_RAD &&
-           fabsf(rest_rad) < STEADY_MAX_RAD;
+    return fabsf(step_rad) > ATTITUDE_STIRS_RAD && fabsf(step_rad) < JUMP_RAD &&
+           fabsf(rest_rad) < JUMP_RAD;
 }
 
 /* The tilts that were rejected go on turning, and at the same rate they have turned since the accepted one:
@@ -54,10 +55,15 @@ static bool is_refuted(const tilt_t *tilt, uint32_t time_us)
     return tilt->against_nats > 0.0F && time_us - tilt->refuted_us <= REFUTED_US;
 }
 
-static bool is_jump(float from_roll_rad, float from_pitch_rad, float roll_rad, float pitch_rad)
+static bool is_jump(const tilt_t *tilt, float roll_rad, float pitch_rad)
 {
-    return arc_rad(from_roll_rad, roll_rad) > ATTITUDE_SPIKE_RAD ||
-           arc_rad(from_pitch_rad, pitch_rad) > ATTITUDE_SPIKE_RAD;
+    return arc_rad(tilt->roll_rad, roll_rad) > JUMP_RAD || arc_rad(tilt->pitch_rad, pitch_rad) > JUMP_RAD;
+}
+
+/* Beyond 20 degrees the scans may refute it. */
+static bool is_steep(float roll_rad, float pitch_rad)
+{
+    return arc_rad(0.0F, roll_rad) > ATTITUDE_SPIKE_RAD || arc_rad(0.0F, pitch_rad) > ATTITUDE_SPIKE_RAD;
 }
 
 static void believe(tilt_t *tilt, float roll_rad, float pitch_rad)
@@ -71,7 +77,7 @@ static void reject(tilt_t *tilt, bool jump, bool refuted)
 {
     tilt->leapt = (tilt->jumped > 0U) ? tilt->leapt : jump;
     tilt->jumped = (uint16_t)(tilt->jumped + (tilt->jumped < JUMPS_HELD));
-    if (refuted && is_jump(0.0F, 0.0F, tilt->roll_rad, tilt->pitch_rad)) {
+    if (refuted && is_steep(tilt->roll_rad, tilt->pitch_rad)) {
         believe(tilt, 0.0F, 0.0F); /* what was accepted on the way there was refuted with it */
     }
 }
@@ -81,10 +87,10 @@ static void reject(tilt_t *tilt, bool jump, bool refuted)
 static bool is_rejected(tilt_t *tilt, float roll_rad, float pitch_rad, uint32_t time_us)
 {
     const bool recent = tilt->levelled && time_us - tilt->time_us <= TILT_GAP_US;
-    const bool jump = is_jump(tilt->roll_rad, tilt->pitch_rad, roll_rad, pitch_rad);
+    const bool jump = is_jump(tilt, roll_rad, pitch_rad);
     const bool strange = jump || cosf(roll_rad) * cosf(pitch_rad) < TILTED_COS;
-    const bool tilted = is_jump(0.0F, 0.0F, roll_rad, pitch_rad);
-    const bool refuted = is_refuted(tilt, time_us) && (strange || (tilted && tilt->against_nats > SURE_NATS));
+    const bool steep = is_steep(roll_rad, pitch_rad);
+    const bool refuted = is_refuted(tilt, time_us) && (strange || (steep && tilt->against_nats > SURE_NATS));
     const bool held = recent && jump && tilt->jumped < JUMPS_HELD && !turns_on(tilt, roll_rad, pitch_rad);
 
     if (refuted || held) {
@@ -156,7 +162,7 @@ void tilt_scan(tilt_t *tilt, const altitude_t *shown, uint16_t count, float heig
     const float nats = (told_mm2 - level_mm2) / (2.0F * noise_mm * noise_mm);
 
     tilt->refuted_us = tilt->time_us; /* mirrors that show nothing leave the sum as it was */
-    if (!aloft || !tilt->levelled || !is_jump(0.0F, 0.0F, tilt->told_rad[0], tilt->told_rad[1])) {
+    if (!aloft || !tilt->levelled || !is_steep(tilt->told_rad[0], tilt->told_rad[1])) {
         tilt->against_nats = 0.0F;
     } else if (goes_on) {
         tilt->against_nats += nats;

@@ -357,6 +357,17 @@ class Losses(Case):
                                            {"SETR": "0", "SEL": "NONE"}, [])):
             self.assertEqual(max(row["thrust_n"] for row in flight.rows), 0.0, str(flight))
 
+    def test_three_spikes_of_an_imu_among_five_frames_move_no_vehicle_that_hovers(self):
+        """Their median is a spike, less what the vehicle has turned: a tilt of 18 degrees in one frame. It doubted the sight in the hover."""
+        def spiked(_):
+            return {"imu_spikes": 0.04}, {}, ["--duration", "200"]
+
+        pinned = [Flight("EST", kind, 503, spiked) for kind in ("nominal", "drawn 1")] if of_many() else []
+        for flight in pinned or flights(("EST",) * 2, ("nominal", "drawn 0"), spiked):
+            self.assertEqual(flight.doubts(), [], str(flight))
+            off = max(abs(row["height_m"] - 0.6) for row in flight.rows if row["state"] == "FLYING" and row["t_s"] > 6.0)
+            self.at_most(0.1, off, flight, "m off the reference")
+
     def test_a_scan_frozen_around_the_lift_off_neither_lifts_nor_drops_it(self):
         for start_s in (1.5, 1.6, 1.7, 2.0, 2.2):
             for flight in flights(("EST",), ("nominal", "drawn 0"),

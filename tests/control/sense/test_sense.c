@@ -1102,14 +1102,15 @@ void test_bad_frames_that_jump_and_drift_are_no_roll(void)
 
 void test_a_median_that_outlasts_its_frames_does_not_count_as_tilted(void)
 {
-    tilt(20.0F, 1);
-    tilt(39.0F, 1);
+    tilt(14.0F, 1);
+    tilt(28.0F, 1);
+    tilt(42.0F, 1);
     tilt(55.0F, 2);
     TEST_ASSERT_EQUAL_UINT16(2U, in.tilted_frames);
     frame.level.roll_rad = 0.0F;
     sense_a_frame(NULL);
     TEST_ASSERT_EQUAL_UINT16(2U, in.tilted_frames);
-    tilt(40.0F, 1);
+    tilt(42.0F, 1);
     TEST_ASSERT_EQUAL_UINT16(0U, in.tilted_frames);
 }
 

@@ -7,30 +7,57 @@ void setUp(void)
 
 void tearDown(void) {}
 
-void test_twenty_degrees_in_a_frame_are_a_jump_of_either_angle_to_either_side(void)
+/* A spike, 0.35 rad, less two frames of the liveliest sway, 0.05 rad each. */
+void test_a_quarter_of_a_radian_in_a_frame_is_a_jump_of_either_angle_to_either_side(void)
 {
     for (int axis = 0; axis < 2; axis++) {
         for (float side = -1.0F; side < 2.0F; side += 2.0F) {
             setUp();
             tilt(0.0F, 0.0F);
-            tilt((axis == 0) ? 0.355F * side : 0.0F, (axis == 1) ? 0.355F * side : 0.0F);
+            tilt((axis == 0) ? 0.255F * side : 0.0F, (axis == 1) ? 0.255F * side : 0.0F);
             TEST_ASSERT_EQUAL_UINT16(1U, senses.tilt.jumped);
             TEST_ASSERT_EQUAL_UINT32(2U, senses.tilt.unfit_sequence);
-            tilt((axis == 0) ? 0.345F * side : 0.0F, (axis == 1) ? 0.345F * side : 0.0F);
+            tilt((axis == 0) ? 0.245F * side : 0.0F, (axis == 1) ? 0.245F * side : 0.0F);
             TEST_ASSERT_EQUAL_UINT16(0U, senses.tilt.jumped);
-            TEST_ASSERT_EQUAL_FLOAT((axis == 0) ? 0.345F * side : 0.0F, senses.tilt.roll_rad);
-            TEST_ASSERT_EQUAL_FLOAT((axis == 1) ? 0.345F * side : 0.0F, senses.tilt.pitch_rad);
+            TEST_ASSERT_EQUAL_FLOAT((axis == 0) ? 0.245F * side : 0.0F, senses.tilt.roll_rad);
+            TEST_ASSERT_EQUAL_FLOAT((axis == 1) ? 0.245F * side : 0.0F, senses.tilt.pitch_rad);
             TEST_ASSERT_EQUAL_UINT32(2U, senses.tilt.unfit_sequence);
+        }
+    }
+}
+
+/* Three spikes to one side among five frames: their median is one of them, less what the vehicle has turned. In
+ * an hour of hover that comes once or twice in ten, and doubted a sight that was sound. */
+void test_three_spikes_of_five_frames_move_the_tilt_of_a_swaying_vehicle_by_no_spike(void)
+{
+    for (unsigned spiked = 0; spiked < 32U; spiked++) {
+        for (int k = 0; k < 40; k++) {
+            attitude_filter_t filter;
+            attitude_t raw = {.pitch_rad = 0.0F};
+
+            setUp();
+            attitude_init(&filter);
+            attitude_restore(&filter, &raw);
+            for (unsigned i = 0; i < 40U; i++) {
+                /* 5 degrees at 0.8 Hz, from any phase */
+                const float truth_rad = 0.0873F * sinf(5.03F * (0.025F * (float)i + 0.031F * (float)k));
+                const bool spike = i >= 20U && i < 25U && (spiked >> (i - 20U) & 1U) != 0U;
+
+                raw.roll_rad = truth_rad + (spike ? 0.35F : 0.0F);
+                (void)attitude_step(&filter, &raw, &frame.level, &frame.median);
+                tilt(frame.median.roll_rad, 0.0F);
+                TEST_ASSERT_FLOAT_WITHIN(0.12F, truth_rad, senses.tilt.roll_rad);
+            }
         }
     }
 }
 
 void test_the_way_through_the_half_turn_is_the_short_one(void)
 {
-    tilt(3.0F, 0.0F);
-    tilt(-3.0F, 0.0F); /* 0.283 rad */
-    TEST_ASSERT_EQUAL_FLOAT(-3.0F, senses.tilt.roll_rad);
-    tilt(2.9F, 0.0F); /* 0.383 rad */
+    tilt(3.03F, 0.0F);
+    tilt(-3.03F, 0.0F); /* 0.223 rad */
+    TEST_ASSERT_EQUAL_FLOAT(-3.03F, senses.tilt.roll_rad);
+    tilt(2.98F, 0.0F); /* 0.273 rad */
     TEST_ASSERT_EQUAL_UINT16(1U, senses.tilt.jumped);
 }
 
@@ -96,7 +123,7 @@ void test_tilted_are_45_degrees_of_one_angle_or_less_of_two(void)
         TEST_ASSERT_EQUAL_UINT16(rows[i].tilted, senses.tilt.tilted);
     }
     NEAR(0.69528F, senses.tilt.upright); /* cos 34 cos 33 */
-    tilt(0.5F, 0.5F);
+    tilt(0.58F, 0.56F);
     TEST_ASSERT_EQUAL_UINT16(0U, senses.tilt.tilted);
     senses.tilt.tilted = 999U;
     tilt(0.8F, 0.8F);
