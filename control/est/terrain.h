@@ -22,9 +22,8 @@
  * A ramp is a plane, and the spots go over it in a row (terrain_ramp.h).
  *
  * What is assumed: one mirror or two meet a ramp first; that all do in one scan is too rare to be looked at.
- * The vehicle flies fore or aft; over a ramp sideways the mirrors tell no slope. Ground that rises evenly
- * under all mirrors, slower than the accelerometer can tell (some 0.05 m/s), is taken for a sinking vehicle.
- * One mirror alone shows too little; it is not asked.
+ * Ground that rises evenly under all mirrors, slower than the accelerometer can tell (some 0.05 m/s), is
+ * taken for a sinking vehicle. One mirror alone shows too little; it is not asked.
  *
  * Metres, seconds. Pure; the caller owns the state, all zero at first. Context: one Task. */
 #ifndef CONTROL_TERRAIN_H

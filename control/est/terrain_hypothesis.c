@@ -208,9 +208,11 @@ bool terrain_hypothesis_alike(const terrain_hypothesis_t *a, const terrain_hypot
 {
     const float off = (a->x[TERRAIN_ALTITUDE] - b->x[TERRAIN_ALTITUDE]) / ALIKE_M;
     const float speed = (a->x[TERRAIN_SPEED] - b->x[TERRAIN_SPEED]) / ALIKE_MPS;
-    const float slope = (a->ramps == 0U) ? 0.0F : (a->x[TERRAIN_SLOPE] - b->x[TERRAIN_SLOPE]) / ALIKE_SLOPE;
+    const bool ramp = a->ramps != 0U;
+    const float slope = ramp ? (a->x[TERRAIN_SLOPE] - b->x[TERRAIN_SLOPE]) / ALIKE_SLOPE : 0.0F;
 
-    return a->ramps == b->ramps && off * off + speed * speed + slope * slope < 1.0F;
+    return a->ramps == b->ramps && (!ramp || a->oblique == b->oblique) &&
+           off * off + speed * speed + slope * slope < 1.0F;
 }
 
 void terrain_hypothesis_merge(terrain_hypothesis_t *into, const terrain_hypothesis_t *other)

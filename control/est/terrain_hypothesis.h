@@ -39,6 +39,7 @@ typedef enum {
 typedef struct {
     float share;    /* its probability, or before that its density */
     uint16_t ramps; /* bits: mirrors that were on a ramp in the latest scan */
+    bool oblique;   /* over that ramp the spots go in no row: it is met obliquely, or sideways */
     float x[TERRAIN_STATES];
     float p[TERRAIN_STATES][TERRAIN_STATES];
 } terrain_hypothesis_t;

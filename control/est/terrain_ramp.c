@@ -13,6 +13,10 @@
 #define GOES_ON 0.85F    /* the seed's ramp takes 7 scans, 0.7 s: 1 - 1/7 */
 #define FOLLOWS 0.3F     /* a spot is 0.11 m behind another: at the seed's 0.4 m/s, three scans */
 #define START_SHARE 0.5F /* of the grounds that it comes down to; the rest is any */
+#define OBLIQUE 0.5F     /* docs/ablation.md: of the ramps, those that are met in no row */
+
+/* docs/ablation.md: density of a ground where no plane and no level is known, of the densest where one is */
+#define ANY_GROUND 0.5F
 
 #define LOGISTIC 1.702F   /* the normal distribution function by a logistic one, within 0.01 (Haley 1952) */
 #define SIGMAS_MOST 20.0F /* expf() */
@@ -73,10 +77,34 @@ static float prior_of_row(const terrain_passage_t *passage, uint16_t rising, con
     return share;
 }
 
-float terrain_ramp_prior(const terrain_passage_t *passage, uint16_t rising)
+static float prior_in_a_row(const terrain_passage_t *passage, uint16_t rising)
 {
     return passage->fore * prior_of_row(passage, rising, rows[NOSE_FIRST]) +
            (1.0F - passage->fore) * prior_of_row(passage, rising, rows[TAIL_FIRST]);
+}
+
+/* One mirror or another meets the ramp first, and then each joins and leaves it for itself. */
+static float prior_oblique(const terrain_passage_t *passage, uint16_t rising)
+{
+    const float joins = (passage->ramps != 0U) ? FOLLOWS : BEGINS;
+    float share = 1.0F;
+
+    for (uint16_t mirror = 0U; mirror < MIRROR_COUNT; ++mirror) {
+        if (has(passage->told, mirror)) {
+            const float probability = has(passage->ramps, mirror) ? GOES_ON : joins;
+
+            share *= has(rising, mirror) ? probability : 1.0F - probability;
+        }
+    }
+    return share;
+}
+
+float terrain_ramp_prior(const terrain_passage_t *passage, uint16_t rising, bool oblique)
+{
+    const bool begins = passage->ramps == 0U && rising != 0U;
+    const float share = begins ? (oblique ? OBLIQUE : 1.0F - OBLIQUE) : 1.0F;
+
+    return share * (oblique ? prior_oblique(passage, rising) : prior_in_a_row(passage, rising));
 }
 
 /* ---- after the scan */
@@ -143,12 +171,11 @@ static void come_down(terrain_hypothesis_t *h, uint16_t mirror, uint16_t steps, 
     }
 }
 
-void terrain_ramp_settle(terrain_hypothesis_t *h, const terrain_passage_t *passage, uint16_t steps,
-                         const float off_m[MIRROR_COUNT], const float fore_m[MIRROR_COUNT])
+static void settle_in_a_row(terrain_hypothesis_t *h, const terrain_passage_t *passage, uint16_t steps,
+                            uint16_t left, const float off_m[MIRROR_COUNT], const float fore_m[MIRROR_COUNT])
 {
     const bool nose_first = passage->fore > 0.5F;
     const uint16_t *row = rows[nose_first ? NOSE_FIRST : TAIL_FIRST];
-    const uint16_t left = passage->ramps & passage->told & (uint16_t) ~(h->ramps | steps);
     const bool downhill = nose_first == (h->x[TERRAIN_SLOPE] < 0.0F);
 
     uint16_t lead = MIRROR_COUNT;
@@ -166,5 +193,27 @@ void terrain_ramp_settle(terrain_hypothesis_t *h, const terrain_passage_t *passa
             bind_level(h, mirror, lead);
         }
         lead = mirror;
+    }
+}
+
+/* Whatever joins those on the ramp, or leaves it, stands anywhere. */
+static void settle_oblique(terrain_hypothesis_t *h, const terrain_passage_t *passage, uint16_t left)
+{
+    const uint16_t joined = (passage->ramps != 0U) ? h->ramps & (uint16_t)~passage->ramps : 0U;
+
+    for (uint16_t mirror = 0U; mirror < MIRROR_COUNT; ++mirror) {
+        h->share *= has(joined | left, mirror) ? ANY_GROUND : 1.0F;
+    }
+}
+
+void terrain_ramp_settle(terrain_hypothesis_t *h, const terrain_passage_t *passage, uint16_t steps,
+                         const float off_m[MIRROR_COUNT], const float fore_m[MIRROR_COUNT])
+{
+    const uint16_t left = passage->ramps & passage->told & (uint16_t) ~(h->ramps | steps);
+
+    if (h->oblique) {
+        settle_oblique(h, passage, left);
+    } else {
+        settle_in_a_row(h, passage, steps, left, off_m, fore_m);
     }
 }

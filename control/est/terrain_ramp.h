@@ -1,5 +1,6 @@
 /* What it means for a ramp that the spots of the mirrors are in a row, and go one after the other over the
- * same ground.
+ * same ground: nose first or tail first. Of a ramp that is met obliquely or sideways nothing of this is
+ * known; the scans decide between the two.
  *
  *   which first   the leading mirror meets a ramp by itself. The next one joins it when the one before it is
  *                 on it, and leaves it when that one has left it. Tail first the aft one leads
@@ -12,6 +13,7 @@
 #ifndef CONTROL_EST_TERRAIN_RAMP_H
 #define CONTROL_EST_TERRAIN_RAMP_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "control/est/terrain_hypothesis.h"
@@ -27,12 +29,13 @@ typedef struct {
 terrain_passage_t terrain_ramp_passage(const terrain_hypothesis_t *hypothesis, uint16_t told, float moved_m,
                                        float gap_s);
 
-/* Probability, before the scan, that these mirrors of those that are told are on the ramp after it. */
-float terrain_ramp_prior(const terrain_passage_t *passage, uint16_t rising);
+/* Probability, before the scan, that these mirrors of those that are told are on the ramp after it; and,
+ * where it begins, that it is met in a row, or obliquely. */
+float terrain_ramp_prior(const terrain_passage_t *passage, uint16_t rising, bool oblique);
 
 /* One way in which the scan came about: the grounds in it. steps: mirrors whose ground has stepped, by off_m
  * as a height tells it. fore_m: of each spot, from the lateral axis. Binds the hypothesis to plane, level and
- * start, and multiplies its share by their densities. */
+ * start, and multiplies its share by their densities; one that is oblique has no such density. */
 void terrain_ramp_settle(terrain_hypothesis_t *hypothesis, const terrain_passage_t *passage, uint16_t steps,
                          const float off_m[MIRROR_COUNT], const float fore_m[MIRROR_COUNT]);
 

@@ -36,8 +36,7 @@ static bool turns_steadily(float accepted_rad, float before_rad, float now_rad, 
     const float step_rad = turn_rad(before_rad, now_rad);
     const float rest_rad = turn_rad(accepted_rad, now_rad) - (float)frames * step_rad;
 
-    return fabsf(step_rad) > ATTITUDE_STIRS_RAD && fabsf(step_rad) < JUMP_RAD &&
-           fabsf(rest_rad) < JUMP_RAD;
+    return fabsf(step_rad) > ATTITUDE_STIRS_RAD && fabsf(step_rad) < JUMP_RAD && fabsf(rest_rad) < JUMP_RAD;
 }
 
 /* The tilts that were rejected go on turning, and at the same rate they have turned since the accepted one:

@@ -229,11 +229,20 @@ class Keeping(Case):
     def test_a_hanging_program_is_given_up(self):
         self.tell("hanging", 2)
         begin = time.monotonic()
-        with mock.patch.object(fleet, "FLIGHT_LIMIT_S", 0.5):
+        with mock.patch.object(fleet, "WALL_LIMIT_S", 0.5):
             status, _, err, _ = self.campaign("--law", "EST", "--set", "nominal", "--runs", "3")
         self.assertEqual(status, 2)
         self.assertIn("timed out", err)
         self.assertLess(time.monotonic() - begin, 15.0)
+
+    def test_processor_time_counts_and_a_busy_machine_does_not(self):
+        """A campaign of hours ended because one flight had waited for the processor for two minutes."""
+        self.program.write_text("#!/bin/sh\nsleep 2; exit 3\n", encoding="utf-8")
+        with mock.patch.object(fleet, "FLIGHT_LIMIT_S", 1), self.assertRaisesRegex(fleet.Broken, "ended with status 3"):
+            fleet.fly(str(self.program), ["est-60cm-ramp"])
+        self.program.write_text("#!/bin/sh\nwhile :; do :; done\n", encoding="utf-8")
+        with mock.patch.object(fleet, "FLIGHT_LIMIT_S", 1), self.assertRaisesRegex(fleet.Broken, "more than 1 s of processor time"):
+            fleet.fly(str(self.program), ["est-60cm-ramp"])
 
     def test_no_figures_or_no_program_is_a_broken_flight(self):
         for name, body in (("silent", "exit 0"), ("prose", 'for p; do :; done; echo fine > "$p"')):

@@ -6,6 +6,8 @@ import json
 import os
 import re
 import shlex
+import resource
+import signal
 import subprocess
 import sys
 import tempfile
@@ -15,12 +17,24 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 BATCH = 1                       # every flight is kept when it ends
 AHEAD = 8                       # tasks per processor that wait at the scheduler
-FLIGHT_LIMIT_S = 120
+FLIGHT_LIMIT_S = 120            # of processor time: a busy machine is no reason to give a campaign up
+WALL_LIMIT_S = 3600             # a flight that waits for something that never comes
 WORKERS_LIMIT_S = 30
 
 
 class Broken(Exception):
     """The program did not fly; the text says why."""
+
+
+def limit_processor_time():
+    resource.setrlimit(resource.RLIMIT_CPU, (FLIGHT_LIMIT_S, FLIGHT_LIMIT_S + 1))
+
+
+def reason_of(done):
+    """Why this one did not fly."""
+    if done.returncode == -signal.SIGXCPU:
+        return f"took more than {FLIGHT_LIMIT_S} s of processor time"
+    return done.stderr.strip() or f"ended with status {done.returncode}"
 
 
 def fly(program, arguments, scenario=None):
@@ -35,10 +49,10 @@ def fly(program, arguments, scenario=None):
         try:
             done = subprocess.run([program, "fly", *arguments, "--json", str(path)], stdin=subprocess.DEVNULL,
                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False,
-                                  timeout=FLIGHT_LIMIT_S)
+                                  timeout=WALL_LIMIT_S, preexec_fn=limit_processor_time)
             if done.returncode in (0, 1):
                 return json.loads(path.read_text(encoding="utf-8"))
-            reason = done.stderr.strip() or f"ended with status {done.returncode}"
+            reason = reason_of(done)
         except (OSError, ValueError, subprocess.TimeoutExpired) as error:
             reason = str(error)
     raise Broken(f"{program} fly {' '.join(arguments)}: {reason}")

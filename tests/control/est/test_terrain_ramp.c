@@ -60,13 +60,25 @@ void test_all_that_may_happen_before_a_scan_adds_up_to_one(void)
         for (uint16_t ramps = 0U; ramps <= ALL; ramps++) {
             for (float speed_mps = -0.6F; speed_mps < 0.7F; speed_mps += 0.3F) {
                 terrain_passage_t passage = going(speed_mps, 0.3F, ramps);
-                float sum = 0.0F;
+                const uint16_t on_it = ramps & told;
+                float in_a_row = 0.0F;
+                float oblique = 0.0F;
 
                 passage.told = told;
                 for (uint16_t rising = 0U; rising <= ALL; rising++) {
-                    sum += ((rising & (uint16_t)~told) == 0U) ? terrain_ramp_prior(&passage, rising) : 0.0F;
+                    if ((rising & (uint16_t)~told) == 0U) {
+                        in_a_row += terrain_ramp_prior(&passage, rising, false);
+                        oblique += (ramps != 0U || rising != 0U) ? terrain_ramp_prior(&passage, rising, true)
+                                                                 : 0.0F;
+                    }
                 }
-                TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 1.0F, sum);
+                if (ramps != 0U) { /* what it is stays so */
+                    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 1.0F, in_a_row);
+                    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 1.0F, oblique);
+                } else { /* one or the other begins; each begins a ramp by nearly the same share */
+                    TEST_ASSERT_FLOAT_WITHIN(0.003F, 1.0F, in_a_row + oblique);
+                    TEST_ASSERT_EQUAL_UINT16(0U, on_it);
+                }
             }
         }
     }
@@ -79,18 +91,18 @@ void test_the_leading_mirror_meets_a_ramp_and_the_others_follow_in_their_order(v
     const terrain_passage_t back = going(-0.5F, 0.1F, BIT(MIRROR_FORE));
     const uint16_t two = BIT(MIRROR_FORE) | BIT(MIRROR_FRONT);
 
-    TEST_ASSERT_FLOAT_WITHIN(0.001F, 0.005F, terrain_ramp_prior(&level, BIT(MIRROR_FORE)));
-    TEST_ASSERT_TRUE(terrain_ramp_prior(&first, two) > 0.2F);
-    TEST_ASSERT_TRUE(terrain_ramp_prior(&first, ALL) < 0.01F * terrain_ramp_prior(&first, two));
-    TEST_ASSERT_TRUE(terrain_ramp_prior(&back, two) < 0.05F * terrain_ramp_prior(&first, two));
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, 0.005F, 2.0F * terrain_ramp_prior(&level, BIT(MIRROR_FORE), false));
+    TEST_ASSERT_TRUE(terrain_ramp_prior(&first, two, false) > 0.2F);
+    TEST_ASSERT_TRUE(terrain_ramp_prior(&first, ALL, false) < 0.01F * terrain_ramp_prior(&first, two, false));
+    TEST_ASSERT_TRUE(terrain_ramp_prior(&back, two, false) < 0.05F * terrain_ramp_prior(&first, two, false));
 }
 
 void test_none_leaves_a_ramp_before_the_one_in_front_of_it(void)
 {
     const terrain_passage_t on = going(0.5F, 0.1F, ALL);
 
-    TEST_ASSERT_TRUE(terrain_ramp_prior(&on, BIT(MIRROR_FRONT) | BIT(MIRROR_AFT)) > 0.05F);
-    TEST_ASSERT_TRUE(terrain_ramp_prior(&on, BIT(MIRROR_FORE) | BIT(MIRROR_FRONT)) < 0.01F);
+    TEST_ASSERT_TRUE(terrain_ramp_prior(&on, BIT(MIRROR_FRONT) | BIT(MIRROR_AFT), false) > 0.05F);
+    TEST_ASSERT_TRUE(terrain_ramp_prior(&on, BIT(MIRROR_FORE) | BIT(MIRROR_FRONT), false) < 0.01F);
 }
 
 /* Ground of the aft one: 0. The plane of the others is 0.12 m below the front one's ground there. */
@@ -132,6 +144,37 @@ void test_one_that_leaves_a_ramp_stands_on_the_ground_of_those_that_left_it_befo
     }
 }
 
+/* The front mirror stands aside of the other two: flown to the right it meets the ramp first, or last. */
+void test_a_ramp_that_is_met_obliquely_has_no_order(void)
+{
+    const terrain_passage_t on = going(0.5F, 0.1F, BIT(MIRROR_FRONT));
+    const uint16_t with_aft = BIT(MIRROR_FRONT) | BIT(MIRROR_AFT);
+    const uint16_t with_fore = BIT(MIRROR_FRONT) | BIT(MIRROR_FORE);
+
+    TEST_ASSERT_EQUAL_FLOAT(terrain_ramp_prior(&on, with_aft, true),
+                            terrain_ramp_prior(&on, with_fore, true));
+    TEST_ASSERT_TRUE(terrain_ramp_prior(&on, ALL, true) > 50.0F * terrain_ramp_prior(&on, ALL, false));
+}
+
+void test_over_a_ramp_that_is_met_obliquely_no_plane_and_no_level_is_known(void)
+{
+    const terrain_passage_t passage = going(0.3F, 0.1F, BIT(MIRROR_FORE) | BIT(MIRROR_FRONT));
+    const terrain_hypothesis_t before = h;
+
+    stand_at(0.05F, 0.16F, 0.0F); /* off the plane */
+    h.oblique = true;
+    h.ramps = ALL;
+    terrain_ramp_settle(&h, &passage, 0U, no_step_m, fore_m);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.5F, h.share); /* one has joined, anywhere */
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, h.x[terrain_ground_of(MIRROR_AFT)]);
+    TEST_ASSERT_EQUAL_MEMORY(before.p, h.p, sizeof h.p);
+
+    h.share = 1.0F;
+    h.ramps = BIT(MIRROR_FRONT); /* two have left it */
+    terrain_ramp_settle(&h, &(terrain_passage_t){.ramps = ALL, .told = ALL}, 0U, no_step_m, fore_m);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.25F, h.share);
+}
+
 /* Tail first down the slope, or nose first: what leads comes down to the ground of the start, 30 mm off. */
 void test_what_comes_down_near_the_ground_of_the_start_stands_on_it(void)
 {
@@ -158,7 +201,8 @@ void test_a_mirror_that_tells_nothing_is_not_in_the_row(void)
     terrain_passage_t passage = going(0.3F, 0.1F, BIT(MIRROR_AFT));
 
     passage.told = two;
-    TEST_ASSERT_TRUE(terrain_ramp_prior(&passage, 0U) > 0.2F); /* it follows the fore one off the ramp */
+    TEST_ASSERT_TRUE(terrain_ramp_prior(&passage, 0U, false) >
+                     0.2F); /* it follows the fore one off the ramp */
     stand_at(-0.4F, 0.25F, 0.24F);
     h.ramps = 0U;
     terrain_ramp_settle(&h, &passage, 0U, no_step_m, fore_m);

@@ -26,8 +26,8 @@ void test_a_quarter_of_a_radian_in_a_frame_is_a_jump_of_either_angle_to_either_s
     }
 }
 
-/* Three spikes to one side among five frames: their median is one of them, less what the vehicle has turned. In
- * an hour of hover that comes once or twice in ten, and doubted a sight that was sound. */
+/* Three spikes to one side among five frames: their median is one of them, less what the vehicle has turned.
+ * In an hour of hover that comes once or twice in ten, and doubted a sight that was sound. */
 void test_three_spikes_of_five_frames_move_the_tilt_of_a_swaying_vehicle_by_no_spike(void)
 {
     for (unsigned spiked = 0; spiked < 32U; spiked++) {
