@@ -9,7 +9,6 @@
 #include "control/sense/witness.h"
 
 #define RISE_TIME_S 0.2F                                   /* chosen: two scans */
-#define UNSEEN_MOST_S 2.0F                                 /* the counter stops here */
 #define BACK_MM (HEIGHT_MIN_MM + 3000.0F * HEIGHT_SIGMA_M) /* hysteresis of three sigma */
 
 bool heights_can_be(heights_t *heights, float height_mm)
@@ -41,11 +40,5 @@ void heights_update(heights_t *heights, const height_change_t *change)
     heights->height_m = change->height_m;
     heights->known = true;
     heights->stepped = change->step;
-    heights->unseen_s = 0.0F;
     heights->rise_mps += gap_s / (RISE_TIME_S + gap_s) * (rise_mps - heights->rise_mps);
-}
-
-void heights_wait(heights_t *heights, float dt_s)
-{
-    heights->unseen_s = at_most(heights->unseen_s + dt_s, UNSEEN_MOST_S);
 }

@@ -11,7 +11,6 @@ typedef struct {
     float height_m;    /* latest height */
     bool stepped;      /* the latest height was a step */
     float rise_mps;    /* low-passed rate of the heights, without steps */
-    float unseen_s;    /* time on the ground since the latest height, at most 2 s */
     bool below_ground; /* so low that no noise explains it: the beam is blocked */
 } heights_t;
 
@@ -34,8 +33,5 @@ height_change_t heights_change(const heights_t *heights, float height_m, float g
 
 /* Takes the height over. */
 void heights_update(heights_t *heights, const height_change_t *change);
-
-/* dt_s on the ground without a height. */
-void heights_wait(heights_t *heights, float dt_s);
 
 #endif

@@ -30,11 +30,10 @@ static bool is_carried(const senses_t *s)
 /* One frame in state GROUND. What is carried is not at rest. */
 static void watch_ground(senses_t *s, float mean_mps2, float dt_s)
 {
-    heights_wait(&s->heights, dt_s);
     if (is_carried(s)) {
         accelerometer_was_lifted(&s->accelerometer, s->heights.rise_mps);
         accelerometer_move(&s->accelerometer, mean_mps2, false, dt_s);
-    } else if (s->heights.unseen_s > HEIGHT_LOST_S && sway_as_in_the_air(&s->sway) && sway_rocks(&s->sway)) {
+    } else if (s->mirrors.unseen_s > HEIGHT_LOST_S && sway_as_in_the_air(&s->sway) && sway_rocks(&s->sway)) {
         accelerometer_in_hands(&s->accelerometer, mean_mps2, sway_is_no_hand(&s->sway), dt_s);
     } else {
         accelerometer_rest(&s->accelerometer, dt_s);
@@ -111,7 +110,7 @@ static void tell_thrust(senses_t *senses, const command_t *command, bool carries
 static void rest(senses_t *senses, const command_t *command)
 {
     if (command->grounded && !accelerometer_is_in_hands(&senses->accelerometer)) {
-        mirrors_rest(&senses->mirrors, senses->heights.unseen_s > HEIGHT_LOST_S);
+        mirrors_rest(&senses->mirrors, senses->mirrors.unseen_s > HEIGHT_LOST_S);
     }
 }
 

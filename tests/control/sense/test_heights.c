@@ -114,23 +114,6 @@ void test_witnesses_that_have_not_begun_explain_nothing(void)
     TEST_ASSERT_TRUE(senses.heights.known);
 }
 
-void test_time_without_a_height_is_counted_on_the_ground_up_to_two_seconds(void)
-{
-    hover();
-    flown.grounded = true;
-    feel(0.0F);
-    for (int i = 0; i < 40; i++) {
-        feel(0.0F);
-    }
-    NEAR(1.025F, senses.heights.unseen_s);
-    for (int i = 0; i < 80; i++) {
-        feel(0.0F);
-    }
-    NEAR(2.0F, senses.heights.unseen_s);
-    height(0.5F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.heights.unseen_s);
-}
-
 void test_a_rate_is_of_ten_milliseconds_at_least(void)
 {
     hover();
