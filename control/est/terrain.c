@@ -16,7 +16,7 @@
 #define APART_M (3.0F * 1.41421356F * TERRAIN_OWN_M) /* three sigmas of two heights: another ground */
 
 #define PER_OWN 66.4903801F /* 1 / (sqrt(2 pi) TERRAIN_OWN_M) */
-#define NO_WAY 1.0e-4F      /* of the density of the best way: less than that is not kept */
+#define NO_WAY 1.0e-3F      /* of the density of the best way: less than that is not kept */
 
 static bool has(uint16_t set, uint16_t mirror)
 {
