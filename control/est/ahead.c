@@ -136,15 +136,16 @@ void ahead_look(ahead_t *ahead, const estimator_t *estimator, const terrain_sigh
 }
 
 /* How much the ground rises, on average, by the mirror that leads with this probability. */
-static float rise_m(const ahead_t *ahead, const ahead_reach_t *reach, mirror_t leads, float probability,
+static float rise_m(const ahead_t *ahead, const cascade_gains_t *gains, mirror_t leads, float probability,
                     float later_s)
 {
-    const float off_m = between(-reach->down_m, ahead->under_m[leads] - ahead->ground_m, reach->up_m);
+    const float off_m = between(-gains->down_mps / gains->height_per_s,
+                                ahead->under_m[leads] - ahead->ground_m, gains->up_mps / gains->height_per_s);
 
     return probability * passes(ahead->way_m[leads], later_s) * beyond_noise(off_m);
 }
 
-float ahead_setpoint_m(const ahead_t *ahead, const ahead_reach_t *reach, float setpoint_m, uint32_t then_us)
+float ahead_setpoint_m(const ahead_t *ahead, const cascade_gains_t *gains, float setpoint_m, uint32_t then_us)
 {
     float highest_m = 0.0F;
 
@@ -155,7 +156,7 @@ float ahead_setpoint_m(const ahead_t *ahead, const ahead_reach_t *reach, float s
         highest_m = at_least(highest_m, ahead->under_m[m] - ahead->ground_m);
     }
     const float later_s = seconds_between(ahead->rays_us, then_us);
-    const float wanted_m = setpoint_m + rise_m(ahead, reach, MIRROR_FORE, ahead->nose, later_s) +
-                           rise_m(ahead, reach, MIRROR_AFT, ahead->tail, later_s);
+    const float wanted_m = setpoint_m + rise_m(ahead, gains, MIRROR_FORE, ahead->nose, later_s) +
+                           rise_m(ahead, gains, MIRROR_AFT, ahead->tail, later_s);
     return at_least(wanted_m, at_most(setpoint_m, highest_m + TERRAIN_LEAST_M));
 }

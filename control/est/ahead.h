@@ -23,6 +23,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "control/est/cascade.h"
 #include "control/est/estimator.h"
 #include "control/est/terrain.h"
 
@@ -44,15 +45,11 @@ void ahead_scan(ahead_t *ahead, const terrain_heights_t *heights, float altitude
  * that is disbelieved shows no ground: nothing is known then. */
 void ahead_look(ahead_t *ahead, const estimator_t *estimator, const terrain_sight_t *sight, uint32_t rays_us);
 
-/* Errors of the height from which on the vehicle climbs and sinks no faster: ground that is farther away asks
- * for no more. */
-typedef struct {
-    float up_m, down_m; /* > 0 */
-} ahead_reach_t;
-
 /* The height to hold above the ground that the height counts from, so that it is setpoint_m above the ground
- * to come, on average. then_us: when the command acts. A descent that begins early leaves TERRAIN_LEAST_M
- * above the highest ground that a mirror shows: the tail may not be clear yet. */
-float ahead_setpoint_m(const ahead_t *ahead, const ahead_reach_t *reach, float setpoint_m, uint32_t then_us);
+ * to come, on average. then_us: when the command acts. Ground that is farther away than up_mps or down_mps
+ * over height_per_s asks for no more speed, so it counts as at that distance. A descent that begins early
+ * leaves TERRAIN_LEAST_M above the highest ground that a mirror shows: the tail may not be clear yet. */
+float ahead_setpoint_m(const ahead_t *ahead, const cascade_gains_t *gains, float setpoint_m,
+                       uint32_t then_us);
 
 #endif

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "control/between.h"
+
 #include "control/credible.h"
 #include "control/seconds.h"
 #include "control/thrust.h"
@@ -76,8 +77,7 @@ static float alone_mps2(const est_law_t *law, float authority_mps2_per_n)
     return sqrtf(AIR_MPS2 * AIR_MPS2 + hover_mps2);
 }
 
-/* Acceleration by the thrust model; known in the air only. Without heights the estimated height is too
- * uncertain to tell. */
+/* By the thrust model; known in the air only. Without heights the height is too uncertain to tell. */
 static modelled_motion_t modelled_motion(const est_law_t *law, const parameters_t *parameters, bool airborne)
 {
     const cascade_vehicle_t vehicle = vehicle_model(law, parameters);
@@ -274,7 +274,7 @@ void est_law_reset(est_law_t *law, const parameters_t *parameters, bool airborne
     lift_off_reset(&law->lift, gravity_n, hold_ground_m(law));
     let_down_reset(&law->down);
     terrain_keep_start(&law->terrain, law->estimator.terrain_height_m);
-    law->ahead = (ahead_t){.known = 0U};
+    law->ahead = (ahead_t){.known = false};
     start_hover(law, parameters, gravity_n, HOVER_SIGMA_START_N);
 }
 
@@ -327,8 +327,7 @@ static cascade_state_t predict_ahead(const est_law_t *law, const cascade_vehicle
     };
 }
 
-/* The thrust at the moment of the lift-off is the first hover thrust. Without accelerations the heights show
- * that moment late. */
+/* The thrust at the lift-off. Without accelerations the heights show that moment late. */
 static float lift_off_hover_n(est_law_t *law, const cascade_vehicle_t *vehicle, const lift_off_signs_t *signs)
 {
     if (signs->felt) {
@@ -373,11 +372,9 @@ static bool take_off(est_law_t *law, const parameters_t *parameters)
 /* A command acts after the dead time, and then the motors lag. */
 static float over_ground_to_come_m(const est_law_t *law, const cascade_gains_t *gains, float setpoint_m)
 {
-    const ahead_reach_t reach = {.up_m = gains->up_mps / gains->height_per_s,
-                                 .down_m = gains->down_mps / gains->height_per_s};
-    const uint32_t lag_us = (uint32_t)(law->actuator.lag_s * 1.0e6F);
-
-    return ahead_setpoint_m(&law->ahead, &reach, setpoint_m, law->now_us + law->actuator.delay_us + lag_us);
+    const actuator_t *actuator = &law->actuator;
+    return ahead_setpoint_m(&law->ahead, gains, setpoint_m,
+                            law->now_us + actuator->delay_us + (uint32_t)(actuator->lag_s * 1.0e6F));
 }
 
 static float speed_setpoint_mps(est_law_t *law, const parameters_t *parameters, const cascade_gains_t *gains,
@@ -388,9 +385,9 @@ static float speed_setpoint_mps(est_law_t *law, const parameters_t *parameters, 
                                    : law->estimator.passes_over ? TERRAIN_KEEP_GROUND
                                                                 : TERRAIN_KEEP_STEPS;
 
-    law->terrain.ignored_m = 0.0F;
-    law->terrain.ignores = false;
     if (mode != EST_MODE_HOLD) {
+        law->terrain.ignored_m = 0.0F;
+        law->terrain.ignores = false;
         return let_down_mps(mode, state->height_m);
     }
     const terrain_keep_ground_t ground = {
@@ -401,8 +398,12 @@ static float speed_setpoint_mps(est_law_t *law, const parameters_t *parameters, 
         law->terrain.arrived_m = reference_m;
     }
     law->terrain.ignores = !follows && law->terrain.arrived_m == reference_m;
-    return cascade_speed_to(gains, state,
-                            follows ? over_ground_to_come_m(law, gains, setpoint_m) : setpoint_m);
+    const float acts_s = law->heightless_s + (float)law->actuator.delay_us * 1.0e-6F;
+    const float held_m = follows ? over_ground_to_come_m(law, gains, setpoint_m) : setpoint_m;
+    const float wanted_mps = cascade_speed_to(gains, state, held_m);
+    return follows ? wanted_mps
+                   : terrain_keep_above_mps(state->height_m, law->estimator.ground_mps, acts_s, gains,
+                                            wanted_mps);
 }
 
 /* The thrust on the ground: of the ramp, or of its end. */

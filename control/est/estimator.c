@@ -358,6 +358,7 @@ void estimator_pass_over(estimator_t *e, bool passes_over)
     }
     e->passes_over = passes_over;
     e->terrain.count = 0U;
+    e->ground_mps = 0.0F;
     e->filter.estimate.terrain_mps = 0.0F;
     filter_reset_variance(&e->filter, FILTER_TERRAIN,
                           passes_over ? 0.0F : filter_variance_start(FILTER_TERRAIN));
@@ -376,6 +377,14 @@ static void take_shown(estimator_t *e, const terrain_shown_t *shown)
     e->terrain_height_m = shown->ground_m;
 }
 
+/* The mean of two scans. A step is no rate. */
+static void learn_ground_rate(estimator_t *e, float risen_m, float gap_s)
+{
+    if (fabsf(risen_m) < TERRAIN_STEP_M) {
+        e->ground_mps += (risen_m - e->ground_mps * gap_s) / (2.0F * SCAN_S + gap_s);
+    }
+}
+
 height_outcome_t estimator_fuse_over(estimator_t *e, const terrain_sight_t *sight, uint32_t rays_us)
 {
     const terrain_heights_t heights = estimator_heights(e, sight, rays_us);
@@ -383,10 +392,12 @@ height_outcome_t estimator_fuse_over(estimator_t *e, const terrain_sight_t *sigh
 
     predict_through(e, rays_us);
     e->rays_us = e->delayed_us;
-    const float altitude_m = e->filter.estimate.height_m + e->terrain_height_m;
+    const float height_m = e->filter.estimate.height_m;
+    const float altitude_m = height_m + e->terrain_height_m;
     terrain_begin(&e->terrain, &e->filter, &heights, altitude_m, e->terrain_height_m);
     const terrain_shown_t shown = terrain_scan(&e->terrain, &heights, gap_s);
     take_shown(e, &shown);
+    learn_ground_rate(e, height_m - e->filter.estimate.height_m, gap_s);
     e->innovation_m = shown.altitude_m - altitude_m;
     e->confirmed = e->unchecked_count == 0U;
     e->unchecked_count = (uint16_t)(e->unchecked_count - (e->unchecked_count > 0U));

@@ -56,6 +56,7 @@ typedef struct {
     roughness_t roughness;    /* of the heights */
     bool passes_over;         /* estimator_pass_over() */
     terrain_t terrain;        /* meanwhile */
+    float ground_mps;         /* meanwhile: how fast the ground has risen, by speed and heights */
     innovation_test_t test;   /* of the heights */
     uint16_t unchecked_count; /* heights yet to be fused without the innovation test */
     bool confirmed;     /* the latest height was used by the test, or was the second one of a terrain step */

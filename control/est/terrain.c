@@ -161,25 +161,24 @@ static uint16_t step(terrain_t *t, const terrain_heights_t *heights, const terra
     return count;
 }
 
-/* All ways that go on from one hypothesis, of the ramps that are met in a row, or obliquely. */
-static uint16_t branch_of(terrain_t *t, const terrain_hypothesis_t *from, const terrain_heights_t *heights,
-                          bool oblique, float gap_s, uint16_t count)
+/* All ways that go on from one hypothesis, over a ramp that is met in a row, or obliquely. */
+static uint16_t branch_over(terrain_t *t, const terrain_hypothesis_t *from, const terrain_heights_t *heights,
+                            const terrain_passage_t *passage, bool oblique, float gap_s, uint16_t count)
 {
     const uint16_t told = heights->valid;
     const float moved_m = heights->reach_m - t->reach_m;
-    const terrain_passage_t passage = terrain_ramp_passage(from, told, moved_m, gap_s);
     const uint16_t first = (from->ramps == 0U && oblique) ? 1U : 0U; /* without a ramp it is not oblique */
 
     for (uint16_t rising = first; rising <= told; ++rising) {
         const bool is_way = (rising & (uint16_t)~told) == 0U;
-        const float share = is_way ? from->share * terrain_ramp_prior(&passage, rising, oblique) : 0.0F;
+        const float share = is_way ? from->share * terrain_ramp_prior(passage, rising, oblique) : 0.0F;
 
         if (share > NO_WAY * t->best) {
             t->risen = *from;
             t->risen.share = share;
             t->risen.oblique = oblique;
             terrain_hypothesis_rise(&t->risen, rising, moved_m, gap_s);
-            count = step(t, heights, &passage, count);
+            count = step(t, heights, passage, count);
         }
     }
     return count;
@@ -190,12 +189,14 @@ static uint16_t branch(terrain_t *t, const terrain_hypothesis_t *from, const ter
                        float gap_s, uint16_t count)
 {
     const bool begins = from->ramps == 0U;
+    const terrain_passage_t passage = terrain_ramp_passage(from, heights->valid,
+                                                           heights->reach_m - t->reach_m, gap_s);
 
     if (begins || !from->oblique) {
-        count = branch_of(t, from, heights, false, gap_s, count);
+        count = branch_over(t, from, heights, &passage, false, gap_s, count);
     }
     if (begins || from->oblique) {
-        count = branch_of(t, from, heights, true, gap_s, count);
+        count = branch_over(t, from, heights, &passage, true, gap_s, count);
     }
     return count;
 }
@@ -266,6 +267,7 @@ void terrain_begin(terrain_t *terrain, const filter_t *filter, const terrain_hei
     }
     first->share = 1.0F;
     first->ramps = 0U;
+    first->oblique = false;
     first->x[TERRAIN_ALTITUDE] = altitude_m;
     first->x[TERRAIN_SPEED] = filter->estimate.speed_mps;
     first->x[TERRAIN_BIAS] = filter->estimate.bias_mps2;

@@ -19,7 +19,7 @@
  * scan (multiple hypothesis tracking; Reid 1979, Blackman 2004). One scan cannot tell "the fore mirror is on
  * a ramp, and the vehicle rises" from "the aft mirror's ground falls"; some scans can.
  *
- * A ramp is a plane, and the spots go over it in a row (terrain_ramp.h).
+ * A ramp is a plane, and the spots go over it in a row, or obliquely (terrain_ramp.h).
  *
  * What is assumed: one mirror or two meet a ramp first; that all do in one scan is too rare to be looked at.
  * Ground that rises evenly under all mirrors, slower than the accelerometer can tell (some 0.05 m/s), is

@@ -3,6 +3,8 @@
  * the rate of the terrain does not count before the reference is reached; its steps do. */
 #include "control/est/terrain_keep.h"
 
+#include <math.h>
+
 #include "control/between.h"
 #include "control/est/terrain.h"
 
@@ -29,4 +31,14 @@ float terrain_keep_setpoint_m(terrain_keep_t *keep, float reference_m, const ter
     keep->terrain_m += ignored_m * step_s / ((ground->how == TERRAIN_KEEP_GROUND) ? GROUND_S : STEPS_S) +
                        ((keep->arrived_m == reference_m) ? 0.0F : ground->rate_mps * step_s);
     return at_least(reference_m - ignored_m, TERRAIN_LEAST_M);
+}
+
+float terrain_keep_above_mps(float height_m, float ground_mps, float acts_s, const cascade_gains_t *gains,
+                             float wanted_mps)
+{
+    const float left_m = height_m - ground_mps * acts_s - TERRAIN_LEAST_M;
+    const float sinks_mps = (left_m > 0.0F) ? sqrtf(2.0F * EST_FALL_MPS2 * left_m)
+                                            : gains->height_per_s * left_m;
+
+    return at_least(wanted_mps, at_most(ground_mps - sinks_mps, gains->up_mps));
 }

@@ -7,6 +7,8 @@
 
 #include <stdbool.h>
 
+#include "control/est/cascade.h"
+
 typedef struct {
     float reference_m; /* of the previous cycle */
     float terrain_m;   /* height of the terrain for which it was set */
@@ -34,5 +36,12 @@ typedef struct {
 /* Height to hold above the present terrain. */
 float terrain_keep_setpoint_m(terrain_keep_t *keep, float reference_m, const terrain_keep_ground_t *ground,
                               float step_s);
+
+/* The vertical speed wanted_mps, or what is needed above the ground. Ground that is thought to rise may be a
+ * vehicle that sinks: either way the height shrinks by that. So it shrinks no faster than a brake of
+ * EST_FALL_MPS2 can stop above TERRAIN_LEAST_M. ground_mps: how fast the ground rises, by heights and
+ * estimated speed. acts_s: from the rays of the latest height until the command acts. */
+float terrain_keep_above_mps(float height_m, float ground_mps, float acts_s, const cascade_gains_t *gains,
+                             float wanted_mps);
 
 #endif

@@ -35,7 +35,7 @@ float terrain_ramp_prior(const terrain_passage_t *passage, uint16_t rising, bool
 
 /* One way in which the scan came about: the grounds in it. steps: mirrors whose ground has stepped, by off_m
  * as a height tells it. fore_m: of each spot, from the lateral axis. Binds the hypothesis to plane, level and
- * start, and multiplies its share by their densities; one that is oblique has no such density. */
+ * start, and multiplies its share by their densities; an oblique one by the density of any ground. */
 void terrain_ramp_settle(terrain_hypothesis_t *hypothesis, const terrain_passage_t *passage, uint16_t steps,
                          const float off_m[MIRROR_COUNT], const float fore_m[MIRROR_COUNT]);
 

@@ -1,7 +1,7 @@
 /* Which tilt is believed. A tilt that jumps by more than 14 degrees is rejected until six in a row were
- * rejected, or until they show a steady turn. In the air one that jumps, or is over 45 degrees, is rejected
- * also while the mirrors refute it: a level vehicle explains their slants better. One beyond 20 degrees is,
- * too, when the scans in sum refute it with 99 %.
+ * rejected, or until they show a steady turn. In the air a tilt beyond 20 degrees is rejected also while the
+ * mirrors refute it, a level vehicle explains their slants better: at once if it jumped or is over 45
+ * degrees, else when the scans in sum refute it with 99 %.
  *
  * Radians. Pure; the caller owns the state. Context: one Task. */
 #ifndef CONTROL_SENSE_TILT_H

@@ -67,8 +67,8 @@ def fly(program, flight, lines):
         land_s = float(re.search(r"^land (\S+)$", flight.text, re.MULTILINE).group(1))
         ask = [line for line in flight.text.splitlines() if not line.startswith(("land ", "end "))]
         path.write_text("\n".join([*ask, *lines, f"at {land_s - 1:g} MIRRORS", f"at {land_s - 0.6:g} LOG RATE SLOW", f"at {land_s - 0.3:g} LOG CLEAR", f"land {land_s:g}", f"end {land_s + 10:g}", ""]), encoding="utf-8")
-        done = subprocess.run([program, "fly", str(path), *flight.words, "--csv", str(log), "--log", str(radio)], capture_output=True, text=True,
-                              check=False, timeout=fleet.WALL_LIMIT_S, preexec_fn=fleet.limit_processor_time)
+        done = subprocess.run(fleet.limited([program, "fly", path, *flight.words, "--csv", log, "--log", radio]), capture_output=True, text=True,
+                              check=False, timeout=fleet.WALL_LIMIT_S)
         answers = ANSWER.findall(radio.read_text(encoding="ascii", errors="replace"))
         if done.returncode not in (0, 1) or not answers:
             raise fleet.Broken(f"{path.name}: {done.stderr.strip() or 'no answer to #MIRRORS'}\n{path.read_text()}")

@@ -81,6 +81,12 @@ static inline void terrain_rises(float terrain_mps, float terrain_height_m)
     est.estimator.terrain_height_m = terrain_height_m;
 }
 
+/* By heights and speed, while it passes over the terrain. */
+static inline void ground_rose_mps(float ground_mps)
+{
+    est.estimator.ground_mps = ground_mps;
+}
+
 static inline void frame_was_s_ago(float frameless_s)
 {
     est.frameless_s = frameless_s;

@@ -56,9 +56,9 @@ static void scan(const float grounds_m[MIRROR_COUNT], uint16_t valid, float sigm
 
 static float setpoint_of_m(float setpoint_m)
 {
-    const ahead_reach_t reach = {.up_m = 0.35F, .down_m = 0.5F}; /* VUP and VDN over POSK, as delivered */
+    static const cascade_gains_t gains = {.height_per_s = 2.0F, .up_mps = 0.7F, .down_mps = 1.0F};
 
-    return ahead_setpoint_m(&ahead, &reach, setpoint_m, now_us + LATER_US);
+    return ahead_setpoint_m(&ahead, &gains, setpoint_m, now_us + LATER_US);
 }
 
 static float rise_m(void)

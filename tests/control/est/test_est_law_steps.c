@@ -1079,6 +1079,28 @@ void test_fifteen_centimetres_over_the_terrain_are_kept(void)
     NEAR(thrust_n[0], thrust_n[1]);
 }
 
+/* The heights shrink by 0.5 m/s. The estimated speed is 0, so the ground rises, or that speed is wrong. */
+void test_near_ground_that_seems_to_rise_an_ignoring_vehicle_is_braked_and_high_above_it_is_not(void)
+{
+    for (float height_m = 0.2F; height_m < 0.9F; height_m += 0.3F) {
+        float thrust_n[2];
+
+        for (int rises = 0; rises < 2; rises++) {
+            setUp();
+            set(PARAMETER_TERRAIN, TERRAIN_IGNORE);
+            (void)hold_n(0.90F);
+            terrain_rises(0.0F, 0.9F - height_m);
+            ground_rose_mps((rises != 0) ? 0.5F : 0.0F);
+            thrust_n[rises] = go_on_n(height_m, 0.90F);
+        }
+        if (height_m < 0.3F) {
+            TEST_ASSERT_TRUE(thrust_n[1] > thrust_n[0] + 1.0F);
+        } else {
+            NEAR(thrust_n[0], thrust_n[1]);
+        }
+    }
+}
+
 /* ---- commands */
 
 void test_a_command_takes_effect_after_the_delay_and_beyond_the_deadband(void)

@@ -95,3 +95,17 @@ void test_fifteen_centimetres_over_the_terrain_are_kept(void)
     NEAR(0.16F, setpoint_m(0.60F, 0.44F, false));
     NEAR(0.15F, setpoint_m(0.60F, 0.9F, false));
 }
+
+/* 3.96 m/s2 of brake: the square root of 2 a h; and by 2 1/s below 0.15 m. A command acts after 0.2 s. */
+void test_the_height_shrinks_no_faster_than_a_brake_stops_above_fifteen_centimetres(void)
+{
+    static const cascade_gains_t gains = {.height_per_s = 2.0F, .up_mps = 0.7F, .down_mps = 1.0F};
+    static const float rows[][3] = {{0.15F, 0.0F, 0.0F}, {0.25F, 0.0F, -0.88994F}, {0.35F, 0.5F, -0.38994F},
+                                    {0.05F, 0.0F, 0.2F}, {0.15F, 0.9F, 0.7F},      {0.05F, -0.5F, -0.5F}};
+
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        NEAR(rows[i][2], terrain_keep_above_mps(rows[i][0], rows[i][1], 0.2F, &gains, -1.0F));
+        NEAR(0.69F + 0.01F * (float)(rows[i][2] > 0.69F),
+             terrain_keep_above_mps(rows[i][0], rows[i][1], 0.2F, &gains, 0.69F));
+    }
+}
