@@ -242,7 +242,7 @@ firmware: ## The target image, by TI's tools without CCS: docs/flashing.md
 flash: ## Put it on the LaunchPad, by the XDS100v2 on its USB
 	@python3 -B tools/ti/flash.py
 
-check-ti: ## The target sources and sim/'s stand-ins against TI's headers; error 77: a root is missing
+check-ti: ## The target sources and sim/'s stand-ins against TI's headers; an error: a root is missing
 	@python3 -B tools/ti/check_ti.py
 
 clean: ## Remove everything that was built, the Python environment included
