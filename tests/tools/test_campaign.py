@@ -648,7 +648,7 @@ class OnPages(unittest.TestCase):
         blocks = re.findall(r"^```\n(.*?)^```", (ROOT / "docs/campaign.md").read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
         own, = (block for block in blocks if block.startswith("{"))
         plan.extend(json.loads(own))
-        self.assertEqual((plan.LAWS["MINE"].settings, plan.SETS["heavy"].runs), ({"POSK": "2"}, 50))
+        self.assertEqual((plan.LAWS["SLOWER"].settings, plan.SETS["heavy"].runs), ({"POSK": "2"}, 50))
         scenario, = (block for block in blocks if block.startswith("like "))
         situation, = (block for block in blocks if block.startswith("["))
         (self.dir / "mine.scenario").write_text(scenario, encoding="utf-8")
