@@ -625,9 +625,11 @@ class OnPages(unittest.TestCase):
         program.write_text("#!/bin/sh\necho 'one of: PD|PID|PIDT|EST|MINE'\n", encoding="utf-8")
         program.chmod(0o755)
         with mock.patch.dict(plan.LAWS), mock.patch.dict(plan.SETS), contextlib.chdir(ROOT), \
+                mock.patch.object(campaign, "CAMPAIGNS", self.dir), \
                 contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            (self.dir / campaign.BEGUN).write_text("[]", encoding="utf-8")     # one that --resume finds
             try:
-                campaign.read_arguments([*words, "--program", str(program)])
+                campaign.read_arguments(words if "--resume" in words else [*words, "--program", str(program)])
             except SystemExit as end:
                 return end.code == 0        # --help
         return True
