@@ -14,6 +14,10 @@ jobs = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 ctest = python3 -B tests/run.py
 # A new build tree is Ninja's where Ninja is installed; a tree that exists keeps what it was made with.
 cmake = CMAKE_GENERATOR="$$(command -v ninja >/dev/null && echo Ninja || echo Unix Makefiles)" cmake -S .
+# LOG is one file, whose name may have blanks, or several.
+logs = if [ -e "$(LOG)" ]; then set -- "$(LOG)"; else set -- $(LOG); fi
+# FILE with its whole name; abspath would take a name with blanks for several. No FILE, no word.
+file = $(if $(FILE),"$$(realpath -m -- "$(FILE)")")
 # The two build trees of the tests. Both build everything once: test and test-long share them.
 define build_tests
 	@$(setup) build test campaign site
@@ -51,7 +55,7 @@ mine: ## Fly a law of your own, FILE=examples/my_law/law_mine.c, beside law EST:
 	@$(setup) build plot
 	@$(MAKE) build
 	@$(cmake) -B build-mine -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=OFF \
-	    -DPLOMADA_LAW="$(abspath $(or $(FILE),examples/my_law/law_mine.c))" >/dev/null
+	    -DPLOMADA_LAW="$$(realpath -m -- "$(or $(FILE),examples/my_law/law_mine.c)")" >/dev/null
 	+@cmake --build build-mine --target plomada $(jobs)
 	@build-mine/plomada fly examples/my_law/mine.scenario --csv build/mine.csv --json build/mine.json
 	@build/plomada fly est-60cm-ramp --csv build/est-60cm-ramp.csv --json build/est-60cm-ramp.json >/dev/null || [ $$? -eq 1 ]
@@ -69,13 +73,13 @@ plot: ## Draw LOG=FILE and say what happened: a flight's CSV (or several), an XC
 	@test -n "$(LOG)" || { echo "usage: make plot LOG=FILE" >&2; exit 2; }
 	@$(setup) build plot
 	@$(MAKE) build
-	@$(python) tools/plot/plot.py $(LOG) -o build/
+	@$(logs); $(python) tools/plot/plot.py "$$@" -o build/
 
 scan: ## Draw what a scanner saw: LOG=FILE of `plomada scip record`, a .logr of flexiport, or a DEVICE (ARGS=--help)
 	@test -n "$(LOG)" || { echo "usage: make scan LOG=FILE|DEVICE" >&2; exit 2; }
 	@$(setup) build plot
 	@$(MAKE) build
-	@$(python) tools/plot/scan.py $(LOG) -o build/ $(ARGS)
+	@$(logs); $(python) tools/plot/scan.py "$$@" -o build/ $(ARGS)
 
 campaign: ## Fly every law on hundreds of vehicles; table, verdicts, CSV, JSON, picture in build/campaign/ (ARGS=--help)
 	@$(setup) build campaign
@@ -85,13 +89,13 @@ campaign: ## Fly every law on hundreds of vehicles; table, verdicts, CSV, JSON, 
 fit: ## Find the vehicle in LOG="a.csv b.csv", flights recorded by `#LOG RATE FAST` or fly --csv; build/vehicle.json (OUT=FILE)
 	@test -n "$(LOG)" || { echo 'usage: make fit LOG="a.csv b.csv" [OUT=FILE]' >&2; exit 2; }
 	@$(setup) build campaign
-	@$(python) tools/fit/fit.py $(LOG) --out $(or $(OUT),build/vehicle.json) $(ARGS)
+	@$(logs); $(python) tools/fit/fit.py "$$@" --out "$(or $(OUT),build/vehicle.json)" $(ARGS)
 
 tune: ## Search the gains of LAW=EST on drawn vehicles, or on VEHICLE=build/vehicle.json with a forecast (ARGS=--help)
 	@test -n "$(LAW)$(VEHICLE)" || { echo "usage: make tune LAW=NAME [ARGS=--help], or make tune VEHICLE=FILE [LAW=EST|PID]" >&2; exit 2; }
 	@$(setup) build campaign
 	@$(MAKE) build
-	@$(python) $(if $(VEHICLE),tools/fit/tune_vehicle.py $(VEHICLE) --law $(or $(LAW),EST),tools/tune/tune.py $(LAW)) $(ARGS)
+	@$(python) $(if $(VEHICLE),tools/fit/tune_vehicle.py "$(VEHICLE)" --law $(or $(LAW),EST),tools/tune/tune.py $(LAW)) $(ARGS)
 
 why: ## Why did it fly so? LOG=FILE of `plomada log`, fly --csv or --record, or a saved console; two sentences and build/why.png
 	@test -n "$(LOG)" || { echo "usage: make why LOG=FILE [ARGS=--help]" >&2; exit 2; }
@@ -102,7 +106,7 @@ why: ## Why did it fly so? LOG=FILE of `plomada log`, fly --csv or --record, or 
 verdict: ## Did the forecast of `make tune VEHICLE=` hold in LOG=next.csv? And what in the model was wrong
 	@test -n "$(LOG)" || { echo "usage: make verdict LOG=next.csv" >&2; exit 2; }
 	@$(setup) build campaign
-	@$(python) tools/fit/verdict.py $(LOG) $(ARGS)
+	@$(logs); $(python) tools/fit/verdict.py "$$@" $(ARGS)
 
 seed-study: ## Which autopilot did the seed fly? And its simulations of chapter 4.1; tables, CSV, picture in build/ (ARGS=--help)
 	@$(setup) build campaign
@@ -121,7 +125,7 @@ ground: build ground-vehicle ## The browser page, to be published or opened as i
 
 ground-vehicle: ## The simulated vehicle as one WebAssembly module: build-ground/plomada.wasm, and vehicle.js for the page
 	@$(setup) build plot ground
-	@tools/ground/vehicle.sh $(abspath $(FILE)) >/dev/null
+	@tools/ground/vehicle.sh $(file) >/dev/null
 	@mkdir -p build-ground && cp build-wasm/plomada.wasm build-ground/
 	@python3 -B tools/ground/vehicle_js.py build-ground/plomada.wasm build-ground/vehicle.js
 
@@ -242,7 +246,7 @@ firmware: ## The target image, by TI's tools without CCS: docs/flashing.md
 flash: ## Put it on the LaunchPad, by the XDS100v2 on its USB
 	@python3 -B tools/ti/flash.py
 
-check-ti: ## The target sources and sim/'s stand-ins against TI's headers; error 77: a root is missing
+check-ti: ## The target sources and sim/'s stand-ins against TI's headers; an error: a root is missing
 	@python3 -B tools/ti/check_ti.py
 
 clean: ## Remove everything that was built, the Python environment included

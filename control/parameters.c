@@ -92,7 +92,7 @@ const parameter_row_t parameter_table[] = {
     [PARAMETER_CLAG] = {"CLAG", "s", 0.1F, 1.0F, 0.25F, NULL, PARAMETERS_EST_MODEL,
                         "EST: lag of the autopilot's climb rate with PLANT CLIMB."},
     [PARAMETER_LINK] = {"LINK", "s", 0.0F, 60.0F, 0.0F, NULL, PARAMETERS_RADIO,
-                        "Longest silence of the link; 0 disarms."},
+                        "Longest silence of the link; 0 turns the watch off."},
     [PARAMETER_SUM] = {"SUM", "-", 0.0F, (float)(SUM_COUNT - 1), (float)SUM_OFF, sum_names, PARAMETERS_RADIO,
                        "Whether every command line must have its sum."},
     [PARAMETER_SEL] = {"SEL", "-", 0.0F, (float)(SEL_COUNT - 1), (float)SEL_NONE, sel_names,

@@ -74,9 +74,13 @@ class Case(unittest.TestCase):
 
     def campaign(self, *words):
         """(exit status, stdout, stderr, flights that the stand-in was asked for)."""
+        return self.typed(*self.argv(*words))
+
+    def typed(self, *words):
+        """The same, of these words alone."""
         before = self.flown()
         with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
-            status = campaign.main(self.argv(*words))
+            status = campaign.main(list(words))
         return status, out.getvalue(), err.getvalue(), self.flown() - before
 
     def flown(self):
@@ -272,15 +276,63 @@ class Keeping(Case):
         self.campaign("--law", "EST", "--set", "nominal", "--runs", "4")
         lines = self.stored()
         (self.out / "flights.jsonl").write_text("".join(line + "\n" for line in lines[:1]), encoding="utf-8")
-        status, out, _, flown = self.campaign("--resume")
+        status, out, err, flown = self.typed("--resume", "--out", str(self.out))
         self.assertEqual((status, flown), (0, 3))
+        self.assertIn(f"goes on with {self.out}, begun with: --law EST --set nominal --runs 4", err)
         self.assertIn("nominal", out)
         self.assertEqual(len(self.stored()), 4)
         shutil.rmtree(self.out)
         with contextlib.redirect_stderr(io.StringIO()) as err, self.assertRaises(SystemExit) as stopped:
-            campaign.main(self.argv("--resume"))
+            campaign.main(["--resume", "--out", str(self.out)])
         self.assertEqual(stopped.exception.code, 2)
         self.assertIn("no campaign was begun", err.getvalue())
+
+    def test_resume_without_a_folder_goes_on_with_the_campaign_that_was_begun_last(self):
+        campaigns = mock.patch.object(campaign, "CAMPAIGNS", self.dir / "campaigns")
+        campaigns.start()
+        self.addCleanup(campaigns.stop)
+        status, _, err, flown = self.typed("--resume")
+        self.assertEqual((status, flown), (2, 0))
+        self.assertIn("no campaign was begun in", err)
+        for number, runs in enumerate(("2", "3", "4")):
+            self.typed("--law", "EST", "--set", "nominal", "--runs", runs, "--program", str(self.program))
+            os.utime(campaign.CAMPAIGNS / f"law-EST-set-nominal-runs-{runs}" / campaign.BEGUN, (number, number))
+        last = campaign.CAMPAIGNS / "law-EST-set-nominal-runs-4"
+        (last / "flights.jsonl").unlink()
+        status, _, err, flown = self.typed("--resume")
+        self.assertEqual((status, flown), (0, 4))
+        self.assertIn(f"goes on with {last}", err)
+
+    def test_resume_with_options_is_refused_and_names_them(self):
+        self.campaign("--law", "EST", "--set", "nominal", "--runs", "2")
+        for words in (("--runs", "3", "--law", "PID", "--seed=9"), ("--page",), ("--program", "x")):
+            with contextlib.redirect_stderr(io.StringIO()) as err, self.assertRaises(SystemExit) as stopped:
+                campaign.main(["--resume", "--out", str(self.out), *words])
+            self.assertEqual(stopped.exception.code, 2)
+            self.assertIn(f"none beside --out: {' '.join(words)}.", err.getvalue())
+
+    def test_a_campaign_goes_on_from_another_directory_and_says_that_its_plan_was_changed(self):
+        own = self.dir / "own.json"
+        own.write_text('{"sets": {"heavy": {"runs": 3, "fixed": {"hover_thrust": 8.4}}}}', encoding="utf-8")
+        words = ("--plan", "own.json", "--law", "EST", "--set", "heavy")
+        with mock.patch.dict(plan.SETS), contextlib.chdir(self.dir):
+            self.assertEqual(self.campaign(*words)[3], 3)
+        with mock.patch.dict(plan.SETS), contextlib.chdir(self.out):
+            self.assertEqual(self.typed("--resume", "--out", str(self.out))[::3], (0, 0))
+        own.write_text(own.read_text(encoding="utf-8").replace("8.4", "8.2"), encoding="utf-8")
+        status, _, err, flown = self.typed("--resume", "--out", str(self.out))
+        self.assertEqual((status, flown), (2, 0))
+        self.assertIn(f"changed since the campaign in {self.out} was begun: {own};", err)
+        with mock.patch.dict(plan.SETS), contextlib.chdir(self.dir):
+            status, _, err, flown = self.campaign(*words)
+        self.assertEqual((status, flown), (0, 3))
+        self.assertIn(f"{own} was changed: what it changes is flown anew", err)
+
+    def test_a_campaign_begun_before_its_files_had_sums_goes_on(self):
+        self.out.mkdir()
+        words = ["--law", "EST", "--set", "nominal", "--runs", "2", "--program", str(self.program)]
+        (self.out / campaign.BEGUN).write_text(json.dumps(words), encoding="utf-8")
+        self.assertEqual(self.typed("--resume", "--out", str(self.out))[::3], (0, 2))
 
     def test_every_result_says_how_to_fly_it_again(self):
         _, out, _, _ = self.campaign("--law", "EST", "--set", "nominal", "--runs", "2", "--set", "plant.gain=0.9")
@@ -573,9 +625,11 @@ class OnPages(unittest.TestCase):
         program.write_text("#!/bin/sh\necho 'one of: PD|PID|PIDT|EST|MINE'\n", encoding="utf-8")
         program.chmod(0o755)
         with mock.patch.dict(plan.LAWS), mock.patch.dict(plan.SETS), contextlib.chdir(ROOT), \
+                mock.patch.object(campaign, "CAMPAIGNS", self.dir), \
                 contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            (self.dir / campaign.BEGUN).write_text("[]", encoding="utf-8")     # one that --resume finds
             try:
-                campaign.read_arguments([*words, "--program", str(program)])
+                campaign.read_arguments(words if "--resume" in words else [*words, "--program", str(program)])
             except SystemExit as end:
                 return end.code == 0        # --help
         return True
@@ -596,7 +650,7 @@ class OnPages(unittest.TestCase):
         blocks = re.findall(r"^```\n(.*?)^```", (ROOT / "docs/campaign.md").read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
         own, = (block for block in blocks if block.startswith("{"))
         plan.extend(json.loads(own))
-        self.assertEqual((plan.LAWS["MINE"].settings, plan.SETS["heavy"].runs), ({"POSK": "2"}, 50))
+        self.assertEqual((plan.LAWS["SLOWER"].settings, plan.SETS["heavy"].runs), ({"POSK": "2"}, 50))
         scenario, = (block for block in blocks if block.startswith("like "))
         situation, = (block for block in blocks if block.startswith("["))
         (self.dir / "mine.scenario").write_text(scenario, encoding="utf-8")

@@ -10,6 +10,39 @@ ROOT = Path(__file__).resolve().parents[2]
 BASICS = ("bash", "env", "dirname", "cmp", "cat", "mkdir", "mktemp", "rm", "cp", "grep", "head", "chmod", "touch")
 
 
+class Names(unittest.TestCase):
+    """What make gives to its tools when a file's name has blanks. The tools are a stand-in that notes its words."""
+
+    def setUp(self):
+        self.dir = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.dir)
+        self.noted = self.dir / "noted"
+        self.tool = self.dir / "cmake"
+        self.tool.write_text(f'#!/bin/sh\nprintf "%s\\n" "$@" >>{self.noted}\n[ "$1" != --build ]\n', encoding="utf-8")     # stops before a program is run
+        self.tool.chmod(0o755)
+        self.file = self.dir / "a b" / "my file.c"
+        self.file.parent.mkdir()
+        self.file.touch()
+
+    def words(self, *typed):
+        """Those of all tools that it ran. Neither make nor setup is run again."""
+        self.noted.unlink(missing_ok=True)
+        subprocess.run(["make", "-C", ROOT, *typed, "MAKE=true", "setup=true", f"python={self.tool}"], check=False, capture_output=True,
+                       env=os.environ | {"PATH": f"{self.dir}:{os.environ['PATH']}"})
+        return self.noted.read_text(encoding="utf-8").splitlines()
+
+    def test_a_name_with_blanks_is_one_word(self):
+        for goal in ("plot", "scan", "fit", "verdict"):
+            self.assertIn(str(self.file), self.words(goal, f"LOG={self.file}"), goal)
+        self.assertIn("a b/v.json", self.words("fit", "LOG=x.csv", "OUT=a b/v.json"))
+        self.assertIn("a b/v.json", self.words("tune", "VEHICLE=a b/v.json"))
+        self.assertIn(f"-DPLOMADA_LAW={self.file}", self.words("mine", f"FILE={self.file}"))
+
+    def test_several_logs_are_several_words(self):
+        for goal in ("plot", "fit"):
+            self.assertIn(["x.csv", "y.csv"], [words[at:at + 2] for words in [self.words(goal, "LOG=x.csv y.csv")] for at in range(len(words))], goal)
+
+
 class Setup(unittest.TestCase):
     def setUp(self):
         self.dir = Path(tempfile.mkdtemp())

@@ -24,6 +24,7 @@ sys.path.insert(0, str(ROOT / "tools/campaign"))
 import campaign  # noqa: E402
 import fleet  # noqa: E402
 import harm  # noqa: E402
+import musts  # noqa: E402
 import plan  # noqa: E402
 import situations  # noqa: E402
 import survey  # noqa: E402
@@ -290,6 +291,33 @@ class Saying(unittest.TestCase):
         for words in (("--lies", "1", "--only", "lice"), ("--fly", "calm/1"), ("--fly", "calm/0/EST"), ("--fly", "calm/1/ESTE"), ("--fly", "clam/1/EST"),
                       ("--fly", "calm/1/EST/out")):
             self.assertEqual(self.campaign(*words)[0], 2, words)
+
+    def test_a_name_of_a_flight_says_which_part_of_it_is_unknown(self):
+        """It said `not of the form SITUATION/NUMBER/LAW` of a name that was of that form; musts.py took foo/1/EST for that too, and fell over foo."""
+        campaigner = str(ROOT / "tools/campaign/campaign.py")
+        for tool, situation in ((campaigner, "gravel"), (campaigner.replace("campaign.py", "musts.py"), next(iter(musts.load()[1].situations.values())).slug)):
+            for name, told in (("foo", "foo: not of the form SITUATION/NUMBER/LAW"), ("foo/1/EST", "no situation foo: one of "),
+                               (f"{situation}/1/FOO", "no law FOO: one of PD, PID"), (f"{situation}/0/EST", "not of the form"),
+                               (f"{situation}/²/EST", "not of the form")):
+                with self.subTest(tool=tool, name=name):
+                    done = subprocess.run([sys.executable, "-B", tool, "--fly", name, "--program", PROGRAM], capture_output=True, text=True, check=False)
+                    self.assertEqual(done.returncode, 2, done.stderr)
+                    self.assertIn(told, done.stderr)
+                    self.assertNotIn("Traceback", done.stderr)
+
+    def test_a_share_of_no_flights_is_refused_and_a_part_of_the_musts_has_its_own_list(self):
+        for share in ("0", "-1", "nan", "inf", "x"):
+            with self.assertRaises(SystemExit) as end, contextlib.redirect_stderr(io.StringIO()):
+                musts.main([f"--share={share}"])
+            self.assertEqual(end.exception.code, 2, share)
+
+        def named(*words):
+            with mock.patch("musts.planned", return_value=[]), mock.patch("musts.fly", return_value=[]), mock.patch.dict(plan.LAWS), \
+                    tempfile.TemporaryDirectory() as out, contextlib.redirect_stdout(io.StringIO()):
+                musts.main([*words, "--out", out, "--program", PROGRAM])
+                return [path.name for path in Path(out).glob("missed*")]
+        self.assertEqual(named("--seed", "3"), ["missed-3.txt"])
+        self.assertEqual(named("--only", "edges", "--share", "0.02"), ["missed-1-only-edges-share-0.02.txt"])
 
     def test_the_page_has_the_blocks_that_the_command_writes(self):
         copy = self.dir / "page.md"

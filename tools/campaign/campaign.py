@@ -2,7 +2,7 @@
 """campaign.py [--law L,L] [--set S,S] [--runs N] [--page] ...: flies each law on many vehicles.
 campaign.py --healthy [N] | --lies [N] | --battery [N] [--law L,L] [--only SITUATION,ROW] [--held-out] [--page] ...: flies them in many situations.
 campaign.py --fly SITUATION/NUMBER/LAW: flies one of those again, and says what it did.
-campaign.py --resume [--out DIR]: goes on with the campaign in DIR, with the options it was begun with.
+campaign.py --resume [--out DIR]: goes on with the campaign in DIR, else with the last one begun in build/campaign, with the options it was begun with.
 
 The vehicle of a run depends on the campaign's seed and the run's number alone, so all laws fly the same vehicles.
 Flights run in processes of their own through Dask, on this machine or on the cluster of --scheduler. Each result is
@@ -17,6 +17,7 @@ docs/campaign.md tells more. Exit status: 0; 1 a law does not reach what it must
 import argparse
 import hashlib
 import json
+import os
 import re
 import sys
 from pathlib import Path
@@ -31,12 +32,15 @@ import verdict
 
 ROOT = Path(__file__).resolve().parents[2]
 
-BEGUN = "arguments.json"        # of --out
-
+BEGUN = "arguments.json"        # of --out: {"words": the command line, "files": {path: its sum}}
+CAMPAIGNS = ROOT / "build/campaign"
+# Options that name a file. Their names are kept whole: a campaign is gone on with from another directory too.
+FILES = ("--plan", "--vehicle", "--program")
 
 # Options that change neither what is flown nor what is told of it: how many words each takes. And how far a campaign goes.
 ASIDE = {"--out": 1, "--resume": 0, "--page": 0, "--program": 1, "--scheduler": 1}
 LENGTH = {"--runs": 1}
+OF_RESUME = {"--resume": 0, "--out": 1}
 NAME_MAX = 80                   # octets of a folder's name
 
 
@@ -52,9 +56,22 @@ def without(words, aside):
     return found
 
 
+def absolute(words):
+    """The same command line with the whole names of its files."""
+    found = []
+    for word in words:
+        name, _, value = word.partition("=")
+        if found and found[-1] in FILES:
+            word = os.path.abspath(word)
+        elif name in FILES and value:
+            word = f"{name}={os.path.abspath(value)}"
+        found.append(word)
+    return found
+
+
 def identity(words):
     """The words of a command line that make the campaign what it is: one of more flights is the same, gone on with."""
-    found = without(words, ASIDE | LENGTH)
+    found = without(absolute(words), ASIDE | LENGTH)
     for at, word in enumerate(found):
         if word.startswith(tuple(f"--{name}=" for name in survey.RUNS)):
             found[at] = word.partition("=")[0]
@@ -69,7 +86,7 @@ def folder_of(words):
     name = re.sub(r"[^\w.=+]+", "-", own).strip("-")
     if len(name) > NAME_MAX:
         name = f"{name[:NAME_MAX - 9]}-{hashlib.sha256(own.encode()).hexdigest()[:8]}"
-    return ROOT / "build/campaign" / name
+    return CAMPAIGNS / name
 
 
 def surveyed(arguments):
@@ -94,21 +111,49 @@ def positive(text):
     return value
 
 
-def resumed(parser, arguments):
-    """The arguments that the campaign in --out was begun with."""
-    path = arguments.out / BEGUN
+def last_begun():
+    """The folder of the campaign that was begun or resumed last, of those that named no --out. Raises Broken."""
+    found = [*CAMPAIGNS.glob(BEGUN), *CAMPAIGNS.glob(f"*/{BEGUN}")]
+    if not found:
+        raise fleet.Broken(f"--resume: no campaign was begun in {CAMPAIGNS}; --out DIR names another folder")
+    return max(found, key=lambda path: path.stat().st_mtime_ns).parent
+
+
+def resumed(parser, arguments, words):
+    """The arguments that the campaign in --out, or the last one, was begun with. Options beside would be dropped, so they are refused."""
+    more = without(words, OF_RESUME)
+    if more:
+        parser.error(f"--resume takes the options that the campaign was begun with, and none beside --out: {' '.join(more)}. "
+                     "To change some, type all of them without --resume")
+    out = arguments.out or last_begun()
+    path = out / BEGUN
     if not path.exists():
-        parser.error(f"--resume: no campaign was begun in {arguments.out}")
-    return parser.parse_args([*begun_with(path), "--out", str(arguments.out)])
+        parser.error(f"--resume: no campaign was begun in {out}")
+    begun, files = begun_with(path)
+    changed = changed_of(files)
+    if changed:
+        raise fleet.Broken(f"--resume: changed since the campaign in {out} was begun: {', '.join(changed)}; to fly it as it is now, "
+                           f"type its options without --resume: {' '.join(begun)}")
+    path.touch()
+    print(f"goes on with {out}, begun with: {' '.join(begun) or 'no options'}", file=sys.stderr)
+    again = parser.parse_args([*begun, "--out", str(out)])
+    again.resume = True
+    return again
 
 
 def begun_with(path):
-    """The command line of a campaign. Raises Broken."""
+    """The command line of a campaign, and {path: sum} of the files that it names. Raises Broken."""
     try:
-        words = [str(word) for word in json.loads(path.read_text(encoding="utf-8"))]
-    except (ValueError, TypeError) as error:
+        found = json.loads(path.read_text(encoding="utf-8"))
+        if isinstance(found, list):         # of before the sums of its files were kept
+            found = {"words": found, "files": {}}
+        return [str(word) for word in found["words"]], dict(found["files"])
+    except (ValueError, TypeError, KeyError) as error:
         raise fleet.Broken(f"{path}: not the arguments of a campaign: {error}") from None
-    return words
+
+
+def changed_of(files):
+    return [name for name, known in files.items() if not Path(name).is_file() or fleet.digest(name) != known]
 
 
 def words_of_laws(arguments):
@@ -141,14 +186,15 @@ def choose(parser, arguments):
 
 def read_arguments(argv):
     sets = "; ".join(f"{name} ({s.runs}): {s.summary}" for name, s in plan.SETS.items()).replace("%", "%%")
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+                                     allow_abbrev=False)     # folders and --resume go by the words
     parser.add_argument("--law", dest="law_words", help="default: " + ", ".join(plan.LAWS))
     parser.add_argument("--set", action="append", default=[], dest="set_words",
                         help=f"or all (default: {','.join(plan.DEFAULT_SETS)}); {sets}; or NAME=VALUE, a parameter or a "
                              "figure of the plant in every flight; may be given again")
     parser.add_argument("--plan", type=Path, metavar="FILE", help="own laws and sets, JSON; docs/campaign.md")
     parser.add_argument("--vehicle", type=Path, metavar="FILE", help="of make fit: in place of the nominal vehicle")
-    parser.add_argument("--resume", action="store_true", help="with the options of the campaign in DIR")
+    parser.add_argument("--resume", action="store_true", help="with the options of the campaign in DIR, or of the last one begun")
     parser.add_argument("--runs", type=positive, help="flights per law in each set (default: in brackets above)")
     for name, runs in survey.RUNS.items():
         parser.add_argument(f"--{name}", type=positive, nargs="?", const=runs, metavar="N",
@@ -164,9 +210,10 @@ def read_arguments(argv):
     parser.add_argument("--out", type=Path, metavar="DIR",
                         help="default: build/campaign, and in it a folder for each campaign with options")
     arguments = parser.parse_args(argv)
-    arguments.out = arguments.out or folder_of(sys.argv[1:] if argv is None else argv)
+    words = sys.argv[1:] if argv is None else list(argv)
     if arguments.resume:
-        arguments = resumed(parser, arguments)
+        arguments = resumed(parser, arguments, words)
+    arguments.out = arguments.out or folder_of(words)
     choose(parser, arguments)
     if surveyed(arguments) and arguments.page and (set(arguments.laws), arguments.seed, arguments.only) != (set(plan.LAWS), 1, []):
         parser.error("--page goes with all situations, the default laws and seed")
@@ -294,17 +341,20 @@ def run(arguments):
 
 def remember(arguments, argv):
     """For --resume. A folder has one campaign: its arguments, tables and picture are not those of another."""
-    words = sys.argv[1:] if argv is None else list(argv)
-    path = arguments.out / BEGUN
-    if "--resume" in words:
+    if arguments.resume:
         return
+    words = absolute(sys.argv[1:] if argv is None else argv)
+    path = arguments.out / BEGUN
     if path.exists():
-        begun = begun_with(path)
+        begun, files = begun_with(path)
         if identity(begun) != identity(words):
             raise fleet.Broken(f"{arguments.out} has another campaign, begun with: {' '.join(begun) or 'no options'}; give this one its own "
                                "--out DIR")
+        for name in changed_of(files):
+            print(f"{name} was changed: what it changes is flown anew", file=sys.stderr)
     arguments.out.mkdir(parents=True, exist_ok=True)
-    fleet.write_whole(path, json.dumps(words))
+    files = {os.path.abspath(name): fleet.digest(name) for name in (arguments.plan, arguments.vehicle) if name}
+    fleet.write_whole(path, json.dumps({"words": words, "files": files}))
 
 
 def main(argv=None):

@@ -16,6 +16,7 @@ what it must not, or when its figure is beyond the bound. The rate of these is t
 import argparse
 import hashlib
 import json
+import math
 import random
 import statistics
 import sys
@@ -234,11 +235,14 @@ def render(rows, seed):
 
 
 def fly_one(name, of_table, musts, seed, program):
-    slug, number, law = name.split("/")
-    situation = next((one for one in of_table.situations.values() if one.slug == slug), None)
-    if situation is None or law not in plan.LAWS or not number.isdigit():
-        raise situations.Wrong(f"{name}: not of the form SITUATION/NUMBER/LAW")
-    one = Planned(musts[situation.row], situation, law, int(number), seed, draw(of_table, situation, law, seed, int(number)))
+    slug, number, law, _ = survey.parts_of(name)
+    known = {one.slug: one for one in of_table.situations.values()}
+    if slug not in known:
+        raise situations.Wrong(f"{name}: no situation {slug}: one of {', '.join(known)}")
+    if law not in plan.LAWS:
+        raise situations.Wrong(f"{name}: no law {law}: one of {', '.join(plan.LAWS)}")
+    situation = known[slug]
+    one = Planned(musts[situation.row], situation, law, number, seed, draw(of_table, situation, law, seed, number))
     path = fleet.ROOT / "build/campaign/single" / f"{name.replace('/', '-')}.scenario"
     path.parent.mkdir(parents=True, exist_ok=True)
     fleet.write_whole(path, one.flight.text)
@@ -248,10 +252,23 @@ def fly_one(name, of_table, musts, seed, program):
     print(f"\nmissed: {'; '.join(missed) or 'nothing'}\n{fleet.command(program, [str(path), *one.flight.words])}")
 
 
+def share_of(text):
+    value = float(text)
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError("more than 0")
+    return value
+
+
+def list_of(arguments):
+    """Where the flights are listed that missed a must. A run of some musts, or of a share, is not the whole one: it has a file of its own."""
+    part = [*(["only", *sorted(arguments.only)] if arguments.only else []), *(["share", f"{arguments.share:g}"] if arguments.share != 1.0 else [])]
+    return arguments.out / f"{'-'.join(['missed', str(arguments.seed), *part])}.txt"
+
+
 def main(argv=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", type=lambda text: text.split(","), default=[], metavar="MUST,MUST", help="these alone")
-    parser.add_argument("--share", type=float, default=1.0, help="of the flights (1)")
+    parser.add_argument("--share", type=share_of, default=1.0, help="of the flights (1)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--fly", metavar="FLIGHT", help="one of them again: SITUATION/NUMBER/LAW")
     parser.add_argument("--page", action="store_true", help="writes the table of docs/reliability.md")
@@ -276,7 +293,7 @@ def main(argv=None):
         return 2
     rows = rows_of(musts, flown, arguments.only)
     print(table.columns([HEAD, *(row.cells() for row in rows)], left=2))
-    listed = arguments.out / f"missed-{arguments.seed}.txt"
+    listed = list_of(arguments)
     fleet.write_whole(listed, "".join(f"{line}\n" for line in missing_it(rows)))
     print(f"\nwhat missed a must, the worst first, and the command of each: {listed}")
     if arguments.page:

@@ -87,14 +87,24 @@ def planned(of_table, laws, seed, runs, held_out, only=()):
 
 def find(name, seed=1):
     """Planned, by its name. Raises situations.Wrong."""
-    slug, number, law, *rest = [*name.split("/"), "", ""][:max(3, name.count("/") + 1)]
-    if law not in plan.LAWS or not number.isdigit() or int(number) < 1 or rest not in ([], [HELD_OUT]):
-        raise situations.Wrong(f"{name}: not of the form SITUATION/NUMBER/LAW or SITUATION/NUMBER/LAW/{HELD_OUT}")
-    for of_table in map(situations.load, situations.TABLES):
+    slug, number, law, rest = parts_of(name, (HELD_OUT,))
+    if law not in plan.LAWS:
+        raise situations.Wrong(f"{name}: no law {law}: one of {', '.join(plan.LAWS)}")
+    tables = [situations.load(of) for of in situations.TABLES]
+    for of_table in tables:
         for situation in of_table.situations.values():
             if situation.slug == slug:
-                return one(of_table, situation, law, int(number), seed, bool(rest))
-    raise situations.Wrong(f"{slug}: no such situation")
+                return one(of_table, situation, law, number, seed, bool(rest))
+    raise situations.Wrong(f"{name}: no situation {slug}: one of {', '.join(one.slug for of in tables for one in of.situations.values())}")
+
+
+def parts_of(name, ends=()):
+    """(Situation, number, law, end or "") of SITUATION/NUMBER/LAW; one of `ends` may follow. Raises situations.Wrong."""
+    form = "SITUATION/NUMBER/LAW"
+    found = re.fullmatch(r"([^/]+)/([0-9]+)/([^/]+)(?:/([^/]+))?", name)
+    if not found or int(found[2]) < 1 or (found[4] or "") not in ("", *ends):
+        raise situations.Wrong(f"{name}: not of the form {' or '.join([form, *(f'{form}/{end}' for end in ends)])}")
+    return found[1], int(found[2]), found[3], found[4] or ""
 
 
 # Flying
