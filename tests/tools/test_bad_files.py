@@ -131,10 +131,24 @@ class Files(unittest.TestCase):
         levels = [*lines, b"select 9000000 1\n", b"select 8000000 0\n"]
         self.refused(self.replay(b"".join(levels)), f"line {len(levels)}: before the level before it")
 
+    def test_a_recording_that_is_cut_is_replayed_and_named_with_status_1(self):
+        whole = (self.dir / "run/flight.plomada").read_bytes()
+        done = self.replay(whole)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("cut", done.stderr)
+        part = whole[:whole.rindex(b"\n", 0, len(whole) * 2 // 5) + 1]      # whole lines alone
+        done = self.replay(part)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("given: the recording is cut: it ends at ", done.stderr)
+        self.assertIn("replayed ", done.stderr)
+        done = self.replay(part.replace(b"plomada-recording 2", b"plomada-recording 1"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("given: no end line, as in older recordings: it may be cut", done.stderr)
+
     def test_a_recording_of_other_than_text_is_refused_and_one_cut_off_is_not(self):
         whole = (self.dir / "run/flight.plomada").read_bytes()
         half = whole[:len(whole) // 2]
-        self.assertEqual(self.replay(half).returncode, 0)
+        self.assertEqual(self.replay(half).returncode, 1)
         self.refused(self.replay(half + b"\0\0\n" + whole[len(whole) // 2:]), "not text")
         self.refused(self.replay(b"plomada-recording 1\noctets imu 9223372036854775807 1e5 0000\n"), "line 2: beyond what a run lasts")
         self.refused(self.replay(b"plomada-recording 1\noctets imu 5 inf 0000\n"), "line 2")
