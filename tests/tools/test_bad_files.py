@@ -54,6 +54,25 @@ class Files(unittest.TestCase):
         self.assertEqual((self.dir / "run/flight.plomada").read_bytes(), before)
         self.assertFalse((self.dir / "not-begun.csv").exists())
 
+    def test_a_flight_that_is_refused_leaves_nothing_and_changes_nothing(self):
+        (self.dir / "kept.json").write_text("kept")
+        (self.dir / "bad.limits").write_text("no limits")
+        before = sorted(self.dir.rglob("*"))
+        flight = ("fly", "./own.scenario", "--record", "left", "--log", "left.log", "--storage", "left.flash")
+        for words, reason in ((("--json", "kept.json", "--csv", "nosuch/x.csv"), "nosuch/x.csv: No such file"), (("--csv", "left.csv", "--limits", "bad.limits"), "bad.limits"),
+                              (("--csv", "left/x.csv", "--trace", "nosuch/x"), "nosuch/x: No such file")):
+            with self.subTest(words):
+                self.refused(self.plomada(*flight, *words), reason)
+                self.assertEqual(sorted(self.dir.rglob("*")), before)
+        self.assertEqual((self.dir / "kept.json").read_text(), "kept")
+        self.assertIn(self.plomada(*flight, "--csv", "left.csv").returncode, (0, 1))
+        self.assertGreater((self.dir / "left/flight.plomada").stat().st_size, 1000)
+
+    def test_an_output_that_is_there_already_holds_the_new_flight_alone(self):
+        (self.dir / "old.csv").write_bytes((self.dir / "flown.csv").read_bytes() + b"more" * 1000)
+        self.assertIn(self.plomada("fly", "./own.scenario", "--csv", "old.csv").returncode, (0, 1))
+        self.assertEqual((self.dir / "old.csv").read_bytes(), (self.dir / "flown.csv").read_bytes())
+
     def apart(self, done, *files):
         """Refused as one file that was given twice; nothing in it has changed."""
         self.refused(done, "are one file")
@@ -81,7 +100,8 @@ class Files(unittest.TestCase):
 
     def test_one_file_for_two_outputs_of_a_flight_is_refused_before_it_is_made(self):
         for words in (("--csv", "z", "--json", "z"), ("--csv", "z", "--radio", "./z"), ("--log", "z", "--trace", str(self.dir / "z")),
-                      ("--storage", "z", "--csv", "z"), ("--record", "new", "--csv", "new/flight.plomada"), ("--csv", "-", "--json", "-")):
+                      ("--storage", "z", "--csv", "z"), ("--record", "new", "--csv", "new/flight.plomada"), ("--csv", "new", "--record", "new"),
+                      ("--csv", "-", "--json", "-")):
             with self.subTest(words):
                 self.apart(self.plomada("fly", "./own.scenario", *words))
                 self.assertFalse((self.dir / "z").exists() or (self.dir / "new").exists())

@@ -156,6 +156,7 @@ typedef struct {
     const char *scenario_path, *vehicle_path, *storage_path, *record_dir, *place_path, *limits_path;
     double cost_scale;
     bool help, height, timing;
+    bool record_made, storage_made; /* the folder, the file: not there before */
 } request_t;
 
 static bool complain(const char *what, const char *subject)
@@ -455,9 +456,12 @@ static void write_json(FILE *out, const request_t *request, const flight_result_
 }
 
 /* Stored at once as well: a file that cannot be written is better known before the flight than after it. */
-static bool load_storage(const char *path)
+static bool load_storage(request_t *request)
 {
+    const char *path = request->storage_path;
     const char *error = path == NULL ? NULL : flash_load(path);
+
+    request->storage_made = path != NULL && access(path, F_OK) != 0;
 
     if (path != NULL && error == NULL) {
         error = flash_store(path);
@@ -497,6 +501,7 @@ static bool files_apart(const request_t *request)
         {"--limits", request->limits_path, false},
         {"--storage", request->storage_path, true},
         {"--record", request->record.path, true},
+        {"--record", request->record_dir, true},
         {"--csv", request->csv.path, true},
         {"--json", request->json.path, true},
         {"--trace", request->trace.path, true},
@@ -506,26 +511,55 @@ static bool files_apart(const request_t *request)
     return output_apart("fly", uses, sizeof uses / sizeof uses[0]);
 }
 
-static bool open_record(request_t *request)
+/* The folder of the recording, which has none yet. */
+static bool make_record_folder(request_t *request)
 {
     const char *path = request->record.path;
 
     if (path == NULL) {
         return true;
     }
-    if (mkdir(request->record_dir, 0777) != 0 && errno != EEXIST) {
+    request->record_made = mkdir(request->record_dir, 0777) == 0;
+    if (!request->record_made && errno != EEXIST) {
         return complain(strerror(errno), request->record_dir);
     }
     if (access(path, F_OK) == 0) {
         return complain("there is a recording already; another --record DIR, or remove it", path);
     }
-    return output_open(&request->record);
+    return true;
+}
+
+enum { OUTPUTS = 5 };
+
+static output_t *const *outputs_of(request_t *request)
+{
+    static output_t *all[OUTPUTS];
+
+    all[0] = &request->record;
+    all[1] = &request->csv;
+    all[2] = &request->json;
+    all[3] = &request->log;
+    all[4] = &request->trace;
+    return all;
+}
+
+/* A flight that is refused leaves no file that it has made. */
+static int refuse(request_t *request)
+{
+
+    output_undo(outputs_of(request), OUTPUTS);
+    if (request->record_made) {
+        rmdir(request->record_dir);
+    }
+    if (request->storage_made) {
+        unlink(request->storage_path);
+    }
+    return 2;
 }
 
 static bool open_outputs(request_t *request)
 {
-    const bool opened = open_record(request) && output_open(&request->csv) && output_open(&request->json) &&
-                        output_open(&request->log) && output_open(&request->trace);
+    const bool opened = make_record_folder(request) && output_open_all(outputs_of(request), OUTPUTS);
 
     request->flight.csv = request->csv.file;
     request->flight.record = request->record.file;
@@ -562,17 +596,16 @@ static int run(request_t *request)
     bool met, kept;
 
     name_record(request);
-    if (!files_apart(request) || !load_place(request) || !load_storage(request->storage_path) ||
-        !open_outputs(request)) {
-        return 2;
+    if (!files_apart(request) || !load_place(request) || !load_storage(request) || !open_outputs(request)) {
+        return refuse(request);
     }
     request->flight.costs = measure_begin(request->cost_scale, request->trace.file, request->limits_path);
     if (request->flight.costs == NULL) {
-        return 2;
+        return refuse(request);
     }
     if (!flight_run(request->scenario, &request->flight, &result, &error)) {
         fprintf(stderr, "plomada fly: %s\n", error);
-        return 2;
+        return refuse(request);
     }
     kept = keep_storage(request->storage_path);
     measure_end();
