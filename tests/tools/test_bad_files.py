@@ -134,6 +134,17 @@ class Files(unittest.TestCase):
         for seed in ("18446744073709551616", "9223372036854775808", "-1", ""):
             self.refused(self.plomada("fly", "./own.scenario", "--seed", seed), "not a seed")
 
+    def test_a_flight_that_lands_before_the_edge_is_not_judged_by_it(self):
+        of_edge = ("terrain_rms_mm", "recovery_s", "settled_s", "undershoot_mm")
+        done = self.plomada("fly", "est-60cm-ramp", "--duration", "6", "--json", "short.json")
+        self.assertEqual(done.returncode, 0, done.stdout)
+        table, judged = done.stdout.split("Not judged, for the flight lands before: ")
+        for name in of_edge:
+            self.assertNotIn(name, table)
+            self.assertIsNone(json.loads((self.dir / "short.json").read_text())[name])
+        self.assertEqual(judged, "hover_rms_mm, hover_mean_error_mm, terrain_rms_mm, recovery_s, undershoot_mm, thrust_std_n\nMET: what could be judged of est-60cm-ramp\n")
+        self.assertNotIn("Not judged", self.plomada("fly", "est-60cm-ramp").stdout)
+
     def test_a_flight_longer_than_time_is_refused(self):
         for option in ("--duration", "--until-down"):
             self.refused(self.plomada("fly", "./own.scenario", option, "1e18"), "not a number of seconds")

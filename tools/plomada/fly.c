@@ -378,8 +378,41 @@ static bool read_arguments(request_t *request, int argc, char **argv)
     return find_scenario(request, argv[optind]) && check_arguments(request);
 }
 
+/* What --duration leaves of the scenario: what is expected behind the landing command cannot be. */
+static scenario_t as_flown(const request_t *request, const metrics_t *metrics)
+{
+    scenario_t flown = *request->scenario;
+
+    flown.expectation_count = 0;
+    for (int i = 0; i < request->scenario->expectation_count; i++) {
+        const expectation_t *e = &request->scenario->expectations[i];
+
+        if (request->flight.duration_s == 0.0 || !metrics->untold[e->metric]) {
+            flown.expectations[flown.expectation_count++] = *e;
+        }
+    }
+    return flown;
+}
+
+static void tell_untold(FILE *out, const scenario_t *whole, const scenario_t *flown, const metrics_t *metrics)
+{
+    const char *before = "Not judged, for the flight lands before:";
+
+    if (flown->expectation_count == whole->expectation_count) {
+        return;
+    }
+    for (int i = 0; i < whole->expectation_count; i++) {
+        if (metrics->untold[whole->expectations[i].metric]) {
+            fprintf(out, "%s %s", before, metric_names[whole->expectations[i].metric]);
+            before = ",";
+        }
+    }
+    fputc('\n', out);
+}
+
 static bool print_verdict(FILE *out, const request_t *request, const flight_result_t *result)
 {
+    const scenario_t flown = as_flown(request, &result->metrics);
     bool met;
 
     if (result->halt != NULL) {
@@ -393,11 +426,14 @@ static bool print_verdict(FILE *out, const request_t *request, const flight_resu
     if (request->flight.realtime) {
         return true;
     }
-    met = figures_judge(out, request->scenario, &result->metrics);
+    tell_untold(out, request->scenario, &flown, &result->metrics);
+    met = figures_judge(out, &flown, &result->metrics);
     if (met) {
         fprintf(out,
-                request->scenario->expectation_count > 0 ? "MET: all expectations of %s\n"
-                                                         : "MET: %s expects no figure\n",
+                flown.expectation_count < request->scenario->expectation_count
+                    ? "MET: what could be judged of %s\n"
+                : flown.expectation_count > 0 ? "MET: all expectations of %s\n"
+                                              : "MET: %s expects no figure\n",
                 request->scenario->name);
     }
     return met;
@@ -425,7 +461,9 @@ static bool print_result(FILE *out, const request_t *request, const flight_resul
     if (request->flight.realtime) {
         print_by_hand(out, request, result);
     } else {
-        figures_print(out, request->scenario, &result->metrics, NULL);
+        const scenario_t flown = as_flown(request, &result->metrics);
+
+        figures_print(out, &flown, &result->metrics, NULL);
     }
     return print_verdict(out, request, result);
 }
