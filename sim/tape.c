@@ -13,7 +13,9 @@
 
 #include "sim/ti/f021/flash.h"
 
-#define FIRST_LINE "plomada-recording 1"
+#define FIRST_LINE "plomada-recording 2"
+#define FIRST_LINE_BEFORE "plomada-recording 1" /* without an end line */
+#define END "end"
 #define CELLS (FLASH_SECTORS * FLASH_SECTOR_CELLS)
 #define ERASED 0xFFFFU
 #define CELLS_A_LINE 16
@@ -139,6 +141,7 @@ void tape_stop(void)
     for (int i = 0; i < BOARD_WIRES; i++) {
         write_run((board_wire_t)i);
     }
+    fprintf(recorder.out, END " %" PRId64 "\n", timeline_now());
     board_probe(BOARD_PROBE_TAPE, NULL);
     recorder.out = NULL;
 }
@@ -182,6 +185,7 @@ typedef struct {
 struct tape {
     list_t octets[BOARD_WIRES], keys, truth, levels;
     unsigned short cells[CELLS];
+    bool has_end, torn; /* its kind of recording has an end line; the last line is not whole */
 };
 
 static void *append(list_t *list, size_t size)
@@ -339,9 +343,9 @@ static const char *read_line(tape_t *tape, char *line)
     return strcmp(line, "truth") == 0 ? read_truth(tape, rest) : read_key(tape, line, rest);
 }
 
-/* False at the end of the file and at a last line without its end: what was cut off does not count. *wrong:
- * what is no line at all. */
-static bool next_line(FILE *in, char line[LINE_MAX_OCTETS], const char **wrong)
+/* False at the end of the file and at a last line without its end: what was cut off does not count. *torn:
+ * there was such a line. *wrong: what is no line at all. */
+static bool next_line(FILE *in, char line[LINE_MAX_OCTETS], bool *torn, const char **wrong)
 {
     size_t length;
 
@@ -350,11 +354,18 @@ static bool next_line(FILE *in, char line[LINE_MAX_OCTETS], const char **wrong)
     }
     length = strlen(line);
     if (length == 0 || line[length - 1] != '\n') {
-        *wrong = feof(in) != 0 ? NULL : "not text, or longer than any line of a recording";
+        *torn = feof(in) != 0;
+        *wrong = *torn ? NULL : "not text, or longer than any line of a recording";
         return *wrong != NULL;
     }
     line[length - 1] = '\0';
     return true;
+}
+
+static bool read_first(tape_t *tape, const char *line)
+{
+    tape->has_end = strcmp(line, FIRST_LINE) == 0;
+    return tape->has_end || strcmp(line, FIRST_LINE_BEFORE) == 0;
 }
 
 tape_t *tape_read(FILE *in, const char **error)
@@ -371,10 +382,10 @@ tape_t *tape_read(FILE *in, const char **error)
     for (int i = 0; i < CELLS; i++) {
         tape->cells[i] = ERASED;
     }
-    if (!next_line(in, line, &wrong) || wrong != NULL || strcmp(line, FIRST_LINE) != 0) {
+    if (!next_line(in, line, &tape->torn, &wrong) || wrong != NULL || !read_first(tape, line)) {
         wrong = "not a recording of plomada";
     }
-    while (wrong == NULL && next_line(in, line, &wrong)) {
+    while (wrong == NULL && next_line(in, line, &tape->torn, &wrong)) {
         number++;
         wrong = wrong != NULL ? wrong : read_line(tape, line);
     }
@@ -417,6 +428,14 @@ bool tape_truth_row(const tape_t *tape, size_t row, tape_truth_t *truth)
     }
     *truth = ((const tape_truth_t *)tape->truth.items)[row];
     return true;
+}
+
+tape_state_t tape_state(const tape_t *tape)
+{
+    if (tape->has_end && tape_value(tape, END, 0) != NULL) {
+        return TAPE_WHOLE;
+    }
+    return tape->has_end || tape->torn ? TAPE_CUT : TAPE_UNTOLD;
 }
 
 sim_time_t tape_end(const tape_t *tape)

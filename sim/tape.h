@@ -5,7 +5,7 @@
  *
  * The file is text, one record a line, in the order of time:
  *
- *   plomada-recording 1
+ *   plomada-recording 2
  *   KEY VALUE                      what the run was: scenario, seed, version, set NAME=VALUE, first_row_ns,
  * rows flash SECTOR OFFSET CELLS      16-bit cells in hex, four digits each; what is not named is erased
  *   octets WIRE T_NS LENGTH_NS HEX the stop bit of the first octet ended at T_NS since power-on, and the
@@ -16,7 +16,10 @@
  *   truth HEIGHT ABS TERRAIN THRUST X Y HEADING    of one row of the log, where a simulated vehicle flew,
  * what it was commanded (N), and where it was; older recordings end before the thrust, or before X
  *
- * A file that was cut off (a full disk, a pulled plug) is good up to its last whole line. */
+ *   end T_NS                       the last line: nothing is missing
+ *
+ * A file that was cut off (a full disk, a pulled plug) is good up to its last whole line, and known by its
+ * end line, which it lacks. Recordings whose first line says 1 never had one. */
 #ifndef SIM_TAPE_H
 #define SIM_TAPE_H
 
@@ -51,6 +54,9 @@ void tape_free(tape_t *tape);
 const char *tape_value(const tape_t *tape, const char *key, size_t n);
 /* False behind the last row. NAN: the recording does not have it. */
 bool tape_truth_row(const tape_t *tape, size_t row, tape_truth_t *truth);
+/* Whether it was recorded to its end. UNTOLD: an older one, of which nobody knows. */
+typedef enum { TAPE_WHOLE, TAPE_UNTOLD, TAPE_CUT } tape_state_t;
+tape_state_t tape_state(const tape_t *tape);
 /* Instant of the latest thing on the recording. */
 sim_time_t tape_end(const tape_t *tape);
 

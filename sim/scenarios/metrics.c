@@ -9,6 +9,7 @@
 #define WITHIN_MM 50.0
 #define SETTLED_FOR_S 0.5
 #define MAX_ERROR_START_S 6.0
+#define HOVER_END_S 7.2 /* before a ramp */
 #define AGAIN_START_S 33.0
 #define AGAIN_END_S 36.0
 #define BY_EYE_START_S 38.0
@@ -71,7 +72,7 @@ static double deviation(const metrics_moments_t *m)
 static bool hovering(const metrics_record_t *record, double t_s)
 {
     if (record->terrain) {
-        return (t_s >= 4.5 && t_s <= 7.2) || (t_s >= 15.0 && t_s <= 20.0);
+        return (t_s >= 4.5 && t_s <= HOVER_END_S) || (t_s >= 15.0 && t_s <= 20.0);
     }
     return t_s >= 6.0 && t_s <= record->land_s;
 }
@@ -298,7 +299,7 @@ static void gather_settled(metrics_record_t *record, const metrics_sample_t *s)
     if (t >= METRICS_REFERENCE_S && t <= OVERSHOOT_END_S) {
         record->overshoot_mm = fmax(record->overshoot_mm, off_mm);
     }
-    if (t >= 7.2 && t <= METRICS_RECOVERY_END_S) {
+    if (t >= HOVER_END_S && t <= METRICS_RECOVERY_END_S) {
         add(&record->ramp, off_mm);
     }
     if (t >= METRICS_EDGE_S && t <= METRICS_RECOVERY_END_S) {
@@ -321,7 +322,7 @@ static void gather_field_day(metrics_record_t *record, const metrics_sample_t *s
 
 static void gather(metrics_record_t *record, const metrics_sample_t *s)
 {
-    if (settled(record, s)) {
+    if (settled(record, s) && s->t_s <= record->land_s) {
         gather_settled(record, s);
     }
     gather_field_day(record, s);
@@ -412,6 +413,36 @@ static bool knows_edge(const metrics_record_t *record)
     return record->terrain && (record->edge_seen || isinf(record->changed_s));
 }
 
+/* The earliest landing command with which a flight has the figure: its window is over, of a hover's two the
+ * first one. */
+static double told_from_s(const metrics_record_t *record, metric_t metric)
+{
+    switch (metric) {
+    case METRIC_HOVER_RMS_MM:
+    case METRIC_HOVER_MEAN_ERROR_MM:
+    case METRIC_THRUST_STD_N:
+        return record->terrain ? HOVER_END_S : MAX_ERROR_START_S;
+    case METRIC_TERRAIN_RMS_MM:
+    case METRIC_RECOVERY_S:
+    case METRIC_SETTLED_S:
+    case METRIC_UNDERSHOOT_MM:
+        return record->terrain ? METRICS_RECOVERY_END_S : 0.0;
+    case METRIC_MAX_ERROR_MM:
+    case METRIC_ALTITUDE_ERROR_MM:
+        return MAX_ERROR_START_S;
+    default:
+        return 0.0;
+    }
+}
+
+static void leave_untold(const metrics_record_t *record, metrics_t *metrics)
+{
+    for (int i = 0; i < METRIC_COUNT; i++) {
+        metrics->untold[i] = record->land_s < told_from_s(record, (metric_t)i);
+        metrics->value[i] = metrics->untold[i] ? NAN : metrics->value[i];
+    }
+}
+
 void metrics_compute(const metrics_record_t *record, metrics_t *metrics)
 {
     double *value = metrics->value;
@@ -445,6 +476,7 @@ void metrics_compute(const metrics_record_t *record, metrics_t *metrics)
     value[METRIC_THRUST_DOUBTS] = record->doubted[2];
     value[METRIC_OFF_S] = record->aside_s;
     value[METRIC_ALOFT_S] = record->in_air_s;
+    leave_untold(record, metrics);
     judge(record, metrics);
 }
 

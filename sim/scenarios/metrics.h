@@ -93,6 +93,7 @@ extern const char *const metric_names[]; /* METRIC_COUNT */
 /* A metric that does not apply (never rose, no terrain) is NAN, and null in JSON. */
 typedef struct {
     double value[METRIC_COUNT];
+    bool untold[METRIC_COUNT]; /* its window was not over, or not begun, when the landing command came: NAN */
     bool failed;
     const char
         *failure; /* "never reached 90 %", "rose above reference + 1 m", "more than 0.55 m off", or NULL */

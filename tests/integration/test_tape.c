@@ -220,6 +220,7 @@ void test_keys_and_truth_come_back_as_they_were_written(void)
     TEST_ASSERT_EQUAL_DOUBLE(0.25, truth.heading_rad);
     TEST_ASSERT_FALSE(tape_truth_row(tape, 1, &truth));
     TEST_ASSERT_INT64_WITHIN(SIM_S / 10, 25 * SIM_S, tape_end(tape));
+    TEST_ASSERT_EQUAL(TAPE_WHOLE, tape_state(tape));
     tape_free(tape);
 }
 
@@ -238,6 +239,32 @@ static const char *read_text(const char *text)
         return NULL;
     }
     return error;
+}
+
+static tape_state_t state_of(const char *text)
+{
+    const char *error = NULL;
+    FILE *file = tmpfile();
+    tape_t *tape;
+    tape_state_t state;
+
+    fputs(text, file);
+    rewind(file);
+    tape = tape_read(file, &error);
+    fclose(file);
+    TEST_ASSERT_NOT_NULL_MESSAGE(tape, error);
+    state = tape_state(tape);
+    tape_free(tape);
+    return state;
+}
+
+void test_a_recording_without_its_end_line_is_cut_and_an_older_one_may_be(void)
+{
+    TEST_ASSERT_EQUAL(TAPE_WHOLE, state_of("plomada-recording 2\nseed 1\nend 5\n"));
+    TEST_ASSERT_EQUAL(TAPE_CUT, state_of("plomada-recording 2\nseed 1\n"));
+    TEST_ASSERT_EQUAL(TAPE_CUT, state_of("plomada-recording 2\nseed 1\nend 5"));
+    TEST_ASSERT_EQUAL(TAPE_UNTOLD, state_of("plomada-recording 1\nseed 1\n"));
+    TEST_ASSERT_EQUAL(TAPE_CUT, state_of("plomada-recording 1\nseed 1\noctets im"));
 }
 
 void test_a_damaged_recording_is_refused_with_its_line_and_one_cut_off_is_read(void)

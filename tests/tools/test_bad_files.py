@@ -54,6 +54,25 @@ class Files(unittest.TestCase):
         self.assertEqual((self.dir / "run/flight.plomada").read_bytes(), before)
         self.assertFalse((self.dir / "not-begun.csv").exists())
 
+    def test_a_flight_that_is_refused_leaves_nothing_and_changes_nothing(self):
+        (self.dir / "kept.json").write_text("kept")
+        (self.dir / "bad.limits").write_text("no limits")
+        before = sorted(self.dir.rglob("*"))
+        flight = ("fly", "./own.scenario", "--record", "left", "--log", "left.log", "--storage", "left.flash")
+        for words, reason in ((("--json", "kept.json", "--csv", "nosuch/x.csv"), "nosuch/x.csv: No such file"), (("--csv", "left.csv", "--limits", "bad.limits"), "bad.limits"),
+                              (("--csv", "left/x.csv", "--trace", "nosuch/x"), "nosuch/x: No such file")):
+            with self.subTest(words):
+                self.refused(self.plomada(*flight, *words), reason)
+                self.assertEqual(sorted(self.dir.rglob("*")), before)
+        self.assertEqual((self.dir / "kept.json").read_text(), "kept")
+        self.assertIn(self.plomada(*flight, "--csv", "left.csv").returncode, (0, 1))
+        self.assertGreater((self.dir / "left/flight.plomada").stat().st_size, 1000)
+
+    def test_an_output_that_is_there_already_holds_the_new_flight_alone(self):
+        (self.dir / "old.csv").write_bytes((self.dir / "flown.csv").read_bytes() + b"more" * 1000)
+        self.assertIn(self.plomada("fly", "./own.scenario", "--csv", "old.csv").returncode, (0, 1))
+        self.assertEqual((self.dir / "old.csv").read_bytes(), (self.dir / "flown.csv").read_bytes())
+
     def apart(self, done, *files):
         """Refused as one file that was given twice; nothing in it has changed."""
         self.refused(done, "are one file")
@@ -81,7 +100,8 @@ class Files(unittest.TestCase):
 
     def test_one_file_for_two_outputs_of_a_flight_is_refused_before_it_is_made(self):
         for words in (("--csv", "z", "--json", "z"), ("--csv", "z", "--radio", "./z"), ("--log", "z", "--trace", str(self.dir / "z")),
-                      ("--storage", "z", "--csv", "z"), ("--record", "new", "--csv", "new/flight.plomada"), ("--csv", "-", "--json", "-")):
+                      ("--storage", "z", "--csv", "z"), ("--record", "new", "--csv", "new/flight.plomada"), ("--csv", "new", "--record", "new"),
+                      ("--csv", "-", "--json", "-")):
             with self.subTest(words):
                 self.apart(self.plomada("fly", "./own.scenario", *words))
                 self.assertFalse((self.dir / "z").exists() or (self.dir / "new").exists())
@@ -114,6 +134,17 @@ class Files(unittest.TestCase):
         for seed in ("18446744073709551616", "9223372036854775808", "-1", ""):
             self.refused(self.plomada("fly", "./own.scenario", "--seed", seed), "not a seed")
 
+    def test_a_flight_that_lands_before_the_edge_is_not_judged_by_it(self):
+        of_edge = ("terrain_rms_mm", "recovery_s", "settled_s", "undershoot_mm")
+        done = self.plomada("fly", "est-60cm-ramp", "--duration", "6", "--json", "short.json")
+        self.assertEqual(done.returncode, 0, done.stdout)
+        table, judged = done.stdout.split("Not judged, for the flight lands before: ")
+        for name in of_edge:
+            self.assertNotIn(name, table)
+            self.assertIsNone(json.loads((self.dir / "short.json").read_text())[name])
+        self.assertEqual(judged, "hover_rms_mm, hover_mean_error_mm, terrain_rms_mm, recovery_s, undershoot_mm, thrust_std_n\nMET: what could be judged of est-60cm-ramp\n")
+        self.assertNotIn("Not judged", self.plomada("fly", "est-60cm-ramp").stdout)
+
     def test_a_flight_longer_than_time_is_refused(self):
         for option in ("--duration", "--until-down"):
             self.refused(self.plomada("fly", "./own.scenario", option, "1e18"), "not a number of seconds")
@@ -131,10 +162,24 @@ class Files(unittest.TestCase):
         levels = [*lines, b"select 9000000 1\n", b"select 8000000 0\n"]
         self.refused(self.replay(b"".join(levels)), f"line {len(levels)}: before the level before it")
 
+    def test_a_recording_that_is_cut_is_replayed_and_named_with_status_1(self):
+        whole = (self.dir / "run/flight.plomada").read_bytes()
+        done = self.replay(whole)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("cut", done.stderr)
+        part = whole[:whole.rindex(b"\n", 0, len(whole) * 2 // 5) + 1]      # whole lines alone
+        done = self.replay(part)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("given: the recording is cut: it ends at ", done.stderr)
+        self.assertIn("replayed ", done.stderr)
+        done = self.replay(part.replace(b"plomada-recording 2", b"plomada-recording 1"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("given: no end line, as in older recordings: it may be cut", done.stderr)
+
     def test_a_recording_of_other_than_text_is_refused_and_one_cut_off_is_not(self):
         whole = (self.dir / "run/flight.plomada").read_bytes()
         half = whole[:len(whole) // 2]
-        self.assertEqual(self.replay(half).returncode, 0)
+        self.assertEqual(self.replay(half).returncode, 1)
         self.refused(self.replay(half + b"\0\0\n" + whole[len(whole) // 2:]), "not text")
         self.refused(self.replay(b"plomada-recording 1\noctets imu 9223372036854775807 1e5 0000\n"), "line 2: beyond what a run lasts")
         self.refused(self.replay(b"plomada-recording 1\noctets imu 5 inf 0000\n"), "line 2")

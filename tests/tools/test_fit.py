@@ -2,6 +2,7 @@
 import contextlib
 import io
 import json
+import os
 import random
 import shutil
 import statistics
@@ -19,6 +20,7 @@ import flight_log  # noqa: E402
 import forecast  # noqa: E402
 import model  # noqa: E402
 import tune_vehicle  # noqa: E402
+import verdict  # noqa: E402
 
 PROGRAM = None
 THRUST = {"hover_thrust": 8.1, "gain": 1.2, "tau": 0.08, "tdelay": 0.02}
@@ -154,11 +156,69 @@ class Fit(unittest.TestCase):
 
     def test_a_forecast_that_holds_and_one_that_does_not(self):
         log = self.fly(4714, {}, "est-60cm-ramp")
-        for low, high, status, words in ((4.0, 25.0, 0, "the forecast held"), (40.0, 60.0, 1, "NOT HELD")):
+        for low, high, status, words in ((4.0, 25.0, 0, "the forecast held"), (4.0, 8.0, 1, "NOT HELD")):
             done = self.verdict(log, {"hover_rms_mm": {"value": low, "low": low, "high": high}}, {"throttle": "THRUST"})
             self.assertEqual(done.returncode, status, done.stdout + done.stderr)
             self.assertIn(words, done.stdout)
             self.assertIn("the ground steps", done.stdout)
+
+    def test_a_flight_that_is_better_than_its_forecast_holds_it(self):
+        expected = {"hover_rms_mm": {"value": 50.0, "low": 40.0, "high": 60.0}, "undershoot_mm": {"value": 400.0, "low": 300.0, "high": 500.0}}
+        done = self.verdict(self.fly(4714, {}, "est-60cm-ramp"), expected, {"throttle": "THRUST"})
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual(done.stdout.count("better than forecast"), 2, done.stdout)
+        self.assertIn("the forecast held\n", done.stdout)
+
+    def test_a_forecast_that_no_figure_of_the_flight_can_be_compared_with_has_not_held(self):
+        edge = {name: {"value": 1.0, "low": 0.5, "high": 500.0} for name in ("recovery_s", "undershoot_mm")}
+        log = self.fly(4717, {})
+        done = self.verdict(log, edge, {"throttle": "THRUST"})
+        self.assertEqual(done.returncode, 2, done.stdout)
+        self.assertIn("verdict: nothing was compared: this flight has no recovery_s, undershoot_mm", done.stderr)
+        self.assertNotIn("held", done.stdout)
+        done = self.verdict(log, {}, {"throttle": "THRUST"})
+        self.assertEqual(done.returncode, 2, done.stdout)
+        hover = self.fly(4718, {}, "pid-40cm")
+        done = self.verdict(hover, {"hover_rms_mm": {"value": 20.0, "low": 10.0, "high": 200.0}} | edge, {"throttle": "THRUST"})
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("the forecast held as far as it was flown, 1 of 3 figures; not in this flight: recovery_s, undershoot_mm", done.stdout)
+
+    def test_how_often_a_right_forecast_fails_by_chance_is_said_and_stands_on_the_page(self):
+        self.assertAlmostEqual(forecast.fails_by_chance(1), 0.05)
+        self.assertAlmostEqual(forecast.fails_by_chance(3), 0.142625)
+        words = dict.fromkeys(forecast.FIGURES, "held") | {"hover_rms_mm": "NOT HELD"}
+        said, status = verdict.told(words)
+        self.assertEqual(status, 1)
+        self.assertIn("by chance one that is right fails in up to 14 of 100 flights, 3 figures compared", said)
+        page = (ROOT / "docs/fit.md").read_text(encoding="utf-8")
+        self.assertIn(f"up to {100 * forecast.fails_by_chance(3):.0f} of 100 flights", page)
+
+    def test_who_reads_only_the_first_lines_hears_of_no_broken_pipe(self):
+        old = {"throttle": "THRUST", "plant.hover_thrust": {"value": 9.0, "low": 8.9, "high": 9.1}}
+        log = self.fly(4719, {})
+        self.verdict(log, {}, old)
+        reads, writes = os.pipe()
+        os.close(reads)
+        for words, status in (("verdict.py", log, "--forecast", self.dir / "forecast.json"), 2), (("fit.py", log, "--out", self.dir / "v.json"), 0):
+            done = subprocess.run([sys.executable, "-B", ROOT / "tools/fit" / words[0], *words[1:]], stdout=writes, stderr=subprocess.PIPE, text=True, check=False)
+            self.assertEqual(done.returncode, status, done.stderr)
+            self.assertNotIn("Broken", done.stderr)
+        os.close(writes)
+
+    def test_a_fit_never_writes_over_a_log_that_it_reads(self):
+        logs = [self.dir / "a.csv", self.dir / "b.png"]
+        for log in logs:
+            log.write_text("t_s\n", encoding="utf-8")
+        (self.dir / "a-link.json").symlink_to("a.csv")
+        for out, refused in (("a.csv", "a.csv"), ("a-link.json", "a-link.json"), ("b.json", "b.png")):
+            done = subprocess.run([sys.executable, "-B", ROOT / "tools/fit/fit.py", *logs, "--out", self.dir / out], capture_output=True, text=True, check=False)
+            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+            self.assertIn(f"{refused}: is read here; another --out", done.stderr)
+        for log in logs:
+            self.assertEqual(log.read_text(encoding="utf-8"), "t_s\n")
+        done = subprocess.run([sys.executable, "-B", ROOT / "tools/fit/fit.py", logs[0], "--out", self.dir / "c.png"], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("c.png: the vehicle and its picture are one file", done.stderr)
 
     def test_what_has_moved_since_is_named(self):
         old = {"throttle": "THRUST", "plant.hover_thrust": {"value": 9.0, "low": 8.9, "high": 9.1}}

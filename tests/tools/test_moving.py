@@ -77,6 +77,16 @@ class Moving(unittest.TestCase):
             self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
             self.assertFalse((self.folder / "out.svg").exists())
 
+    def test_a_picture_never_lies_over_the_flight_that_it_shows(self):
+        flight = self.flight("est-60cm-ramp")
+        before = flight.read_bytes()
+        (self.folder / "a-link.svg").symlink_to(flight)
+        for output in (flight, self.folder / "a-link.svg"):
+            done = subprocess.run([sys.executable, "-B", ROOT / "tools/plot/moving.py", flight, "-o", output], capture_output=True, text=True, check=False)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn(f"{output}: is read here; another -o", done.stderr)
+        self.assertEqual(flight.read_bytes(), before)
+
 
 if __name__ == "__main__":
     PROGRAM = sys.argv.pop(1)

@@ -79,6 +79,17 @@ class Case(unittest.TestCase):
         self.assertEqual(self.run_scan(self.dir / "nowhere")[0], 2)
         self.assertEqual(list(self.dir.glob("*.png")), [])
 
+    def test_a_picture_never_lies_over_its_recording_and_has_the_name_of_one(self):
+        source = self.dir / "room.png"
+        shutil.copy(FIXTURES / "ms_front.bin", source)
+        before = source.read_bytes()
+        for output, reason in ((source, "room.png: is read here; another -o"), (self.dir / "x.bin", "x.bin: no name of a picture"), (self.dir / "x", "x: no name of a picture")):
+            status, said, complained = self.run_scan(source, "-o", output)
+            self.assertEqual((status, said), (2, ""))
+            self.assertIn(reason, complained)
+        self.assertEqual([path.name for path in self.dir.iterdir()], ["room.png"])
+        self.assertEqual(source.read_bytes(), before)
+
     def test_a_live_sensor_is_recorded_and_drawn(self):
         link = self.dir / "urg"
         with subprocess.Popen([PROGRAM, "laser", "--link", link, "--height", "0.4"], stdout=subprocess.DEVNULL,

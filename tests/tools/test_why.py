@@ -86,6 +86,22 @@ class Short(OfTenSeconds):
         self.assertIn("vibration ...", done.stderr)
         self.assertEqual((self.dir / "shown.png").read_bytes()[:4], b"\x89PNG")
 
+    def test_the_picture_lies_where_it_is_said_to_and_the_end_of_a_pipe_is_no_end_of_the_work(self):
+        log = self.short("nothing")
+        (self.dir / "pictures").mkdir()
+        done = self.plomada(log, "--out", "pictures")
+        self.assertEqual((done.returncode, done.stdout.splitlines()[-1]), (0, "pictures/why.png"), done.stderr)
+        self.assertEqual((self.dir / "pictures/why.png").read_bytes()[:4], b"\x89PNG")
+        self.assertFalse((self.dir / "pictures.png").exists())
+        self.assertEqual(why.read_arguments(["a.csv", "--out", "shown"]).out, Path("shown.png"))
+        reads, writes = os.pipe()
+        os.close(reads)
+        done = subprocess.run([PROGRAM, "why", log, "--out", self.dir / "piped.png"], stdout=writes, stderr=subprocess.PIPE, text=True, check=False)
+        os.close(writes)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("Broken", done.stderr)
+        self.assertEqual((self.dir / "piped.png").read_bytes()[:4], b"\x89PNG")
+
     def test_of_a_healthy_flight_nothing_is_named(self):
         case, found = why.ask(self.short("nothing"), PROGRAM)
         self.assertEqual(why.verdict(found), [])

@@ -19,6 +19,8 @@ import numpy
 
 import flight_log
 import model
+import recording        # on the path by flight_log
+from say import say
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/campaign"))
@@ -207,10 +209,17 @@ def read_arguments(argv):
     return parser.parse_args(argv)
 
 
+def check_named(out, pictured):
+    if out == pictured:
+        raise flight_log.Unfit(f"{out}: the vehicle and its picture are one file; a name that ends in .json")
+
+
 def main(argv=None):
     arguments = read_arguments(argv)
     pictured = arguments.out.with_suffix(".png")
     try:
+        recording.apart([arguments.out, pictured], arguments.logs, "--out")      # said before the work
+        check_named(arguments.out, pictured)
         vehicle, found, stretches = fit_logs(arguments.logs)
         import fit_picture  # Matplotlib takes its second: what is wrong with a log is told before
         vehicle["version"] = fleet.version()
@@ -220,8 +229,8 @@ def main(argv=None):
     except (flight_log.Unfit, OSError) as error:
         print(f"fit: {error}", file=sys.stderr)
         return 2
-    print(text(vehicle))
-    print(f"\n{arguments.out}\n{pictured}")
+    say(text(vehicle))
+    say(f"\n{arguments.out}\n{pictured}")
     return 0
 
 

@@ -21,6 +21,7 @@ EDGE_M, EDGE_S = 0.15, 0.3      # a height that jumps so far from scan to scan, 
 SETTLED_S = 3.5                 # after a change of the reference
 AFTER_EDGE_S = 3.98             # as the scenarios' metrics
 WITHIN_M = 0.05
+COVERAGE = 0.9                  # of each interval, as intervals() says
 FIGURES = {"hover_rms_mm": "mm", "recovery_s": "s", "undershoot_mm": "mm"}
 
 
@@ -215,3 +216,9 @@ def intervals(flown):
             low, middle, high = numpy.quantile(values, (0.025, 0.5, 0.975), method="weibull")
             result[name] = {"value": float(middle), "low": float(low), "high": float(high)}
     return result
+
+
+def fails_by_chance(count):
+    """How often a flight breaks a forecast of so many figures that is right: one of them, or more, is above its interval. Figures of
+    one flight fail together now and then. As if each failed by itself it is more often, so this is the most."""
+    return 1.0 - (1.0 - (1.0 - COVERAGE) / 2.0)**count

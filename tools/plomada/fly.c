@@ -156,6 +156,7 @@ typedef struct {
     const char *scenario_path, *vehicle_path, *storage_path, *record_dir, *place_path, *limits_path;
     double cost_scale;
     bool help, height, timing;
+    bool record_made, storage_made; /* the folder, the file: not there before */
 } request_t;
 
 static bool complain(const char *what, const char *subject)
@@ -377,8 +378,41 @@ static bool read_arguments(request_t *request, int argc, char **argv)
     return find_scenario(request, argv[optind]) && check_arguments(request);
 }
 
+/* What --duration leaves of the scenario: what is expected behind the landing command cannot be. */
+static scenario_t as_flown(const request_t *request, const metrics_t *metrics)
+{
+    scenario_t flown = *request->scenario;
+
+    flown.expectation_count = 0;
+    for (int i = 0; i < request->scenario->expectation_count; i++) {
+        const expectation_t *e = &request->scenario->expectations[i];
+
+        if (request->flight.duration_s == 0.0 || !metrics->untold[e->metric]) {
+            flown.expectations[flown.expectation_count++] = *e;
+        }
+    }
+    return flown;
+}
+
+static void tell_untold(FILE *out, const scenario_t *whole, const scenario_t *flown, const metrics_t *metrics)
+{
+    const char *before = "Not judged, for the flight lands before:";
+
+    if (flown->expectation_count == whole->expectation_count) {
+        return;
+    }
+    for (int i = 0; i < whole->expectation_count; i++) {
+        if (metrics->untold[whole->expectations[i].metric]) {
+            fprintf(out, "%s %s", before, metric_names[whole->expectations[i].metric]);
+            before = ",";
+        }
+    }
+    fputc('\n', out);
+}
+
 static bool print_verdict(FILE *out, const request_t *request, const flight_result_t *result)
 {
+    const scenario_t flown = as_flown(request, &result->metrics);
     bool met;
 
     if (result->halt != NULL) {
@@ -392,11 +426,14 @@ static bool print_verdict(FILE *out, const request_t *request, const flight_resu
     if (request->flight.realtime) {
         return true;
     }
-    met = figures_judge(out, request->scenario, &result->metrics);
+    tell_untold(out, request->scenario, &flown, &result->metrics);
+    met = figures_judge(out, &flown, &result->metrics);
     if (met) {
         fprintf(out,
-                request->scenario->expectation_count > 0 ? "MET: all expectations of %s\n"
-                                                         : "MET: %s expects no figure\n",
+                flown.expectation_count < request->scenario->expectation_count
+                    ? "MET: what could be judged of %s\n"
+                : flown.expectation_count > 0 ? "MET: all expectations of %s\n"
+                                              : "MET: %s expects no figure\n",
                 request->scenario->name);
     }
     return met;
@@ -424,7 +461,9 @@ static bool print_result(FILE *out, const request_t *request, const flight_resul
     if (request->flight.realtime) {
         print_by_hand(out, request, result);
     } else {
-        figures_print(out, request->scenario, &result->metrics, NULL);
+        const scenario_t flown = as_flown(request, &result->metrics);
+
+        figures_print(out, &flown, &result->metrics, NULL);
     }
     return print_verdict(out, request, result);
 }
@@ -455,9 +494,12 @@ static void write_json(FILE *out, const request_t *request, const flight_result_
 }
 
 /* Stored at once as well: a file that cannot be written is better known before the flight than after it. */
-static bool load_storage(const char *path)
+static bool load_storage(request_t *request)
 {
+    const char *path = request->storage_path;
     const char *error = path == NULL ? NULL : flash_load(path);
+
+    request->storage_made = path != NULL && access(path, F_OK) != 0;
 
     if (path != NULL && error == NULL) {
         error = flash_store(path);
@@ -497,6 +539,7 @@ static bool files_apart(const request_t *request)
         {"--limits", request->limits_path, false},
         {"--storage", request->storage_path, true},
         {"--record", request->record.path, true},
+        {"--record", request->record_dir, true},
         {"--csv", request->csv.path, true},
         {"--json", request->json.path, true},
         {"--trace", request->trace.path, true},
@@ -506,26 +549,55 @@ static bool files_apart(const request_t *request)
     return output_apart("fly", uses, sizeof uses / sizeof uses[0]);
 }
 
-static bool open_record(request_t *request)
+/* The folder of the recording, which has none yet. */
+static bool make_record_folder(request_t *request)
 {
     const char *path = request->record.path;
 
     if (path == NULL) {
         return true;
     }
-    if (mkdir(request->record_dir, 0777) != 0 && errno != EEXIST) {
+    request->record_made = mkdir(request->record_dir, 0777) == 0;
+    if (!request->record_made && errno != EEXIST) {
         return complain(strerror(errno), request->record_dir);
     }
     if (access(path, F_OK) == 0) {
         return complain("there is a recording already; another --record DIR, or remove it", path);
     }
-    return output_open(&request->record);
+    return true;
+}
+
+enum { OUTPUTS = 5 };
+
+static output_t *const *outputs_of(request_t *request)
+{
+    static output_t *all[OUTPUTS];
+
+    all[0] = &request->record;
+    all[1] = &request->csv;
+    all[2] = &request->json;
+    all[3] = &request->log;
+    all[4] = &request->trace;
+    return all;
+}
+
+/* A flight that is refused leaves no file that it has made. */
+static int refuse(request_t *request)
+{
+
+    output_undo(outputs_of(request), OUTPUTS);
+    if (request->record_made) {
+        rmdir(request->record_dir);
+    }
+    if (request->storage_made) {
+        unlink(request->storage_path);
+    }
+    return 2;
 }
 
 static bool open_outputs(request_t *request)
 {
-    const bool opened = open_record(request) && output_open(&request->csv) && output_open(&request->json) &&
-                        output_open(&request->log) && output_open(&request->trace);
+    const bool opened = make_record_folder(request) && output_open_all(outputs_of(request), OUTPUTS);
 
     request->flight.csv = request->csv.file;
     request->flight.record = request->record.file;
@@ -562,17 +634,16 @@ static int run(request_t *request)
     bool met, kept;
 
     name_record(request);
-    if (!files_apart(request) || !load_place(request) || !load_storage(request->storage_path) ||
-        !open_outputs(request)) {
-        return 2;
+    if (!files_apart(request) || !load_place(request) || !load_storage(request) || !open_outputs(request)) {
+        return refuse(request);
     }
     request->flight.costs = measure_begin(request->cost_scale, request->trace.file, request->limits_path);
     if (request->flight.costs == NULL) {
-        return 2;
+        return refuse(request);
     }
     if (!flight_run(request->scenario, &request->flight, &result, &error)) {
         fprintf(stderr, "plomada fly: %s\n", error);
-        return 2;
+        return refuse(request);
     }
     kept = keep_storage(request->storage_path);
     measure_end();

@@ -1,6 +1,7 @@
 #include "output.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -25,6 +26,62 @@ bool output_open(output_t *output)
     }
     output->file = output_is_stdout(output) ? stdout : fopen(output->path, "w");
     return output->file != NULL || complain(output);
+}
+
+/* As fopen() for writing, but what is in it stays for now. */
+static bool open_whole(output_t *output)
+{
+    if (output->path == NULL || output_is_stdout(output)) {
+        output->file = output->path == NULL ? NULL : stdout;
+        return true;
+    }
+    int there = open(output->path, O_WRONLY | O_CREAT | O_EXCL, 0666);
+
+    output->made = there >= 0;
+    if (!output->made) {
+        there = open(output->path, O_WRONLY | O_CREAT, 0666);
+    }
+    output->file = there < 0 ? NULL : fdopen(there, "w");
+    return output->file != NULL || complain(output);
+}
+
+static bool make_empty(output_t *output)
+{
+    struct stat what;
+    const bool is_file = output->file != NULL && !output_is_stdout(output) &&
+                         fstat(fileno(output->file), &what) == 0 && S_ISREG(what.st_mode);
+
+    return !is_file || ftruncate(fileno(output->file), 0) == 0 || complain(output);
+}
+
+bool output_open_all(output_t *const outputs[], size_t count)
+{
+    bool opened = true;
+
+    for (size_t i = 0; i < count && opened; i++) {
+        opened = open_whole(outputs[i]);
+    }
+    for (size_t i = 0; i < count && opened; i++) {
+        opened = make_empty(outputs[i]);
+    }
+    if (!opened) {
+        output_undo(outputs, count);
+    }
+    return opened;
+}
+
+void output_undo(output_t *const outputs[], size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (outputs[i]->file != NULL && !output_is_stdout(outputs[i])) {
+            fclose(outputs[i]->file);
+        }
+        outputs[i]->file = NULL;
+        if (outputs[i]->made) {
+            unlink(outputs[i]->path);
+            outputs[i]->made = false;
+        }
+    }
 }
 
 bool output_close(output_t *output)

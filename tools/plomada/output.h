@@ -9,10 +9,17 @@
 typedef struct {
     const char *path; /* NULL: not asked for */
     FILE *file;       /* NULL: not open */
+    bool made;        /* by output_open_all(): it was not there before */
 } output_t;
 
 /* Opens output->path when there is one. On failure the reason is on stderr. */
 bool output_open(output_t *output);
+
+/* All of them, or none: when one does not open, the others are as they were. */
+bool output_open_all(output_t *const outputs[], size_t count);
+
+/* Closes them. Those that output_open_all() has made are removed. */
+void output_undo(output_t *const outputs[], size_t count);
 
 /* Flushes and closes. False when any octet did not reach the file (a full disk, a closed pipe); the reason is
  * on stderr. */

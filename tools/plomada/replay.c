@@ -40,8 +40,9 @@ static const char usage[] =
     "would\n"
     "                      have flown\n"
     "  --telemetry         the lines that the firmware sent by radio, on stderr\n\n"
-    "Exit status: 0 replayed to its end, 1 the firmware stopped, 2 usage, or a file that cannot be read or "
-    "written.\n";
+    "Exit status: 0 replayed to its end, 1 the firmware stopped, or the recording is cut, 2 usage, or a file "
+    "that cannot be\n"
+    "read or written.\n";
 
 enum { OPT_CSV = 1, OPT_SET, OPT_TELEMETRY, OPT_HELP };
 
@@ -168,6 +169,15 @@ static void tell(const request_t *request, const tape_t *tape, const flight_repl
                 request->sets.overrides[i].value);
     }
     fputc('\n', stderr);
+    if (tape_state(tape) == TAPE_CUT) {
+        fprintf(stderr,
+                "plomada replay: %s: the recording is cut: it ends at %.2f s without its end line, and the "
+                "flight went on\n",
+                request->path, (double)tape_end(tape) * 1e-9);
+    } else if (tape_state(tape) == TAPE_UNTOLD) {
+        fprintf(stderr, "plomada replay: %s: no end line, as in older recordings: it may be cut\n",
+                request->path);
+    }
     if (result->halt != NULL) {
         fprintf(stderr, "plomada replay: the firmware stopped after %.2f s: %s\n", result->end_s,
                 result->halt);
@@ -229,8 +239,10 @@ static int run(request_t *request)
         return 2;
     }
     tell(request, tape, &result);
+    const bool to_its_end = result.halt == NULL && tape_state(tape) != TAPE_CUT;
+
     tape_free(tape);
-    return !output_close(&request->csv) ? 2 : result.halt != NULL ? 1 : 0;
+    return !output_close(&request->csv) ? 2 : to_its_end ? 0 : 1;
 }
 
 int command_replay(int argc, char **argv)

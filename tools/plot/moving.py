@@ -111,6 +111,7 @@ def main(arguments):
     if len(titles) != len(options.files):
         parser.error("as many --title as files")
     try:
+        recording.apart([options.output], options.files, "-o")
         recordings = [recording.read(file) for file in options.files]
         for file, rec in zip(options.files, recordings):
             if rec.kind != "flight":

@@ -328,9 +328,7 @@ def check_output(output, files):
     path = picture_path(output, files[0])
     if path.suffix.lower() not in PICTURES:
         raise recording.Unreadable(f"{path}: no name of a picture: it ends in {', '.join(PICTURES)}, or is a folder with its /")
-    for written in (path, path.with_suffix(".html")):
-        if any(written.exists() and Path(file).exists() and written.samefile(file) for file in files):
-            raise recording.Unreadable(f"{written}: is read here; another -o")
+    recording.apart([path, path.with_suffix(".html")], files, "-o")
 
 
 def draw_files(files, output):

@@ -46,6 +46,13 @@ class Unreadable(Exception):
     """The file is none of the four kinds, or a damaged one."""
 
 
+def apart(written, files, option):
+    """Raises Unreadable when what is to be written is one of the files that are read. One file goes by many names: links too."""
+    for path in map(Path, written):
+        if any(path.exists() and Path(file).exists() and path.samefile(file) for file in files):
+            raise Unreadable(f"{path}: is read here; another {option}")
+
+
 @dataclass
 class Recording:
     name: str

@@ -19,9 +19,12 @@ from pathlib import Path
 os.environ.setdefault("MPLCONFIGDIR", os.path.join(sys.prefix, "matplotlib"))
 import numpy  # noqa: E402
 
+import recording  # noqa: E402
+
 PROGRAM = Path(__file__).resolve().parents[2] / "build/plomada"
 CODE_LIMIT_MM = 20      # smaller values are codes
 FAR_MM = 4095           # two characters end here: far or unknown
+PICTURES = (".png", ".svg", ".pdf")
 COLUMNS_MAX = 2000      # of the image; a longer recording shows every n-th scan
 
 
@@ -133,6 +136,13 @@ def picture_path(output, source):
     return Path(output)
 
 
+def check_picture(path, source):
+    """A picture is no other kind of file, and not the one that is read."""
+    if path.suffix.lower() not in PICTURES:
+        raise NoScan(2, f"{path}: no name of a picture: it ends in {', '.join(PICTURES)}, or is a folder with its /")
+    recording.apart([path], [source], "-o")
+
+
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("source", metavar="FILE|DEVICE")
@@ -140,14 +150,18 @@ def main(arguments):
     parser.add_argument("--seconds", type=float, default=5.0, help="of a DEVICE; default 5")
     parser.add_argument("--program", metavar="PLOMADA", default=str(PROGRAM), help="default: build/plomada")
     options = parser.parse_args(arguments)
+    path = picture_path(options.output, options.source)
     try:
+        check_picture(path, options.source)
         scans, sensor = read(options.program, options.source, options.seconds)
-        path = picture_path(options.output, options.source)
         path.parent.mkdir(parents=True, exist_ok=True)
         draw(scans, f"{Path(options.source).name}: {len(scans.time_s)} scans   {sensor}", path)
     except NoScan as error:
         print(f"scan: {error}", file=sys.stderr)
         return error.status
+    except recording.Unreadable as error:
+        print(f"scan: {error}", file=sys.stderr)
+        return 2
     except OSError as error:
         print(f"scan: {error.filename}: {error.strerror}", file=sys.stderr)
         return 2

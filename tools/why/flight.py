@@ -69,6 +69,9 @@ def replayed(path, program, scratch):
     done = subprocess.run([program, "replay", str(path), "--csv", str(csv)], check=False, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     if done.returncode == 2 or not csv.exists():
         raise Unfit(f"{path}: {done.stderr.strip()[:200]}")
+    for line in done.stderr.splitlines():
+        if line.startswith("plomada replay: "):     # it is cut, or the firmware stopped
+            print(line, file=sys.stderr)
     return csv
 
 

@@ -3,7 +3,7 @@
 
 LOG is a CSV of `plomada log` or of `plomada fly --csv`, a saved console with a dump of #LOG, or the directory of `fly --record`. The
 vehicle is found in its own flight. Then each cause is tried: how much more likely is the flight with it than without? The causes
-come in the order of that, in nats; two sentences say what happened and what to do, and FILE (build/why.png) shows it. It says so when it
+come in the order of that, in nats; two sentences say what happened and what to do, and FILE (build/why.png; or a folder) shows it. It says so when it
 does not know, or when nothing is wrong. docs/why.md tells more. Exit status: 0; 2 usage, or a log that does not hold what is needed.
 """
 import argparse
@@ -21,6 +21,7 @@ import flight  # noqa: E402
 import law  # noqa: E402
 import vehicle  # noqa: E402
 import without  # noqa: E402
+from say import say  # noqa: E402  on the path by flight
 from causes.case import Case  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -118,12 +119,21 @@ def table(found):
     return "\n".join(lines)
 
 
+def picture_path(out):
+    """In a folder it has the name it always has. Without an ending it gets one: Matplotlib gives it one too, and tells nobody."""
+    if out.is_dir():
+        return out / PICTURE.name
+    return out if out.suffix else out.with_name(f"{out.name}.png")
+
+
 def read_arguments(argv):
     parser = argparse.ArgumentParser(prog="plomada why", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("log", type=Path, metavar="LOG")
     parser.add_argument("--out", type=Path, default=PICTURE, metavar="FILE")
     parser.add_argument("--program", type=Path, default=ROOT / "build/plomada", help=argparse.SUPPRESS)
-    return parser.parse_args(argv)
+    arguments = parser.parse_args(argv)
+    arguments.out = picture_path(arguments.out)
+    return arguments
 
 
 def check_out(arguments):
@@ -146,14 +156,14 @@ def main(argv=None):
         return 2
     flown, would = without_it(case, found)
     said = [*sentences(case, found), *filter(None, [hint(found)])]
-    print("\n".join([*said, *([would] if would else []), table(found)]))
+    say("\n".join([*said, *([would] if would else []), table(found)]))
     import picture  # noqa: PLC0415  Matplotlib takes its second: what is wrong with a log is told before
     try:
         picture.draw(arguments.out, " ".join(said), case, [(causes.TABLE[key].name, finding) for key, finding in found.items()], flown)
     except (OSError, ValueError) as error:
         print(f"why: {arguments.out}: {error}", file=sys.stderr)
         return 2
-    print(f"\n{arguments.out}")
+    say(f"\n{arguments.out}")
     return 0
 
 

@@ -469,6 +469,44 @@ void test_who_is_always_on_his_way_has_no_error_and_no_recovery(void)
     TEST_ASSERT_TRUE(isnan(value(METRIC_UNDERSHOOT_MM)));
 }
 
+static void fly_and_land(double land_s)
+{
+    metrics_begin(&record, 0.6, true, land_s);
+    ticks = 0;
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    go(land_s, 0.6);
+    go(land_s + 2.0, 0.0);
+    go(20.0, 0.0);
+}
+
+void test_who_has_landed_before_the_edge_has_no_figure_of_it(void)
+{
+    static const metric_t of_edge[] = {METRIC_TERRAIN_RMS_MM, METRIC_RECOVERY_S, METRIC_SETTLED_S,
+                                       METRIC_UNDERSHOOT_MM};
+
+    for (size_t i = 0; i < sizeof of_edge / sizeof of_edge[0]; i++) {
+        fly_and_land(6.0);
+        TEST_ASSERT_TRUE(isnan(value(of_edge[i])));
+        TEST_ASSERT_TRUE(found.untold[of_edge[i]]);
+        fly_and_land(14.9); /* its way down lies in the window */
+        TEST_ASSERT_TRUE(isnan(value(of_edge[i])));
+        fly_and_land(15.0);
+        NEAR(3.5, 0.0, value(of_edge[i])); /* the sample of the command itself counts */
+        TEST_ASSERT_FALSE(found.untold[of_edge[i]]);
+    }
+}
+
+void test_the_way_down_is_no_hover_and_a_part_of_the_first_one_is_none(void)
+{
+    fly_and_land(16.0);
+    NEAR(0.5, 0.0, value(METRIC_HOVER_RMS_MM)); /* the sample of the command itself counts */
+    fly_and_land(5.0);
+    TEST_ASSERT_TRUE(isnan(value(METRIC_HOVER_RMS_MM)));
+    TEST_ASSERT_TRUE(isnan(value(METRIC_ALTITUDE_ERROR_MM)));
+    TEST_ASSERT_TRUE(found.untold[METRIC_HOVER_RMS_MM]);
+}
+
 void test_a_figure_that_needs_a_plan_is_none_of_those_that_follow_from_the_flight(void)
 {
     TEST_ASSERT_TRUE(metrics_needs_plan(METRIC_RISE_TIME_S));
