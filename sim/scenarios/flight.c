@@ -25,6 +25,7 @@
 #define ANSWER_PATIENCE (3 * SIM_S)
 #define ANSWER_END (300 * SIM_MS) /* of silence */
 #define DUMP_PATIENCE (600 * SIM_S)
+#define DOWN_PATIENCE (60 * SIM_S)
 
 static struct {
     plant_t plant;
@@ -558,9 +559,15 @@ static void sample(FILE *csv)
     }
 }
 
-/* The vehicle stands, and everything that its recorder holds comes by radio. */
+/* Everything that the recorder holds comes by radio. While the motors turn it still records, and the oldest rows
+ * would be lost on the way. */
 static void dump(void)
 {
+    const sim_time_t down = timeline_now() + DOWN_PATIENCE;
+
+    while (quadrotor_state(board_quadrotor())->motors && timeline_now() < down &&
+           kernel_run_until(timeline_now() + STEP)) {
+    }
     const sim_time_t end = timeline_now() + DUMP_PATIENCE;
 
     type_at(timeline_now(), "LOG", "");

@@ -56,6 +56,14 @@ class Log(unittest.TestCase):
         (self.dir / name).write_bytes(content.encode("latin-1"))
         return subprocess.run([PROGRAM, "log", name, *options], cwd=self.dir, capture_output=True, text=True, check=False)
 
+    def test_a_flight_that_is_not_down_yet_at_its_end_is_dumped_when_its_motors_stand(self):
+        """#LOG was typed while it landed, and up to 55 of the rows that it had announced were overwritten on the way."""
+        (self.dir / "short.scenario").write_text("like est-60cm-ramp\nname short\nland 30\nend 30.5\n", encoding="utf-8")
+        flown = subprocess.run([PROGRAM, "fly", "short.scenario", "--log", "short.log"], cwd=self.dir, capture_output=True, text=True, check=False)
+        self.assertIn(flown.returncode, (0, 1), flown.stderr)
+        told = subprocess.run([PROGRAM, "log", "short.log"], cwd=self.dir, capture_output=True, text=True, check=False)
+        self.assertEqual(told.returncode, 0, told.stdout + told.stderr)
+
     def written(self, name):
         return (self.dir / name).read_text(encoding="ascii")
 
