@@ -559,8 +559,8 @@ static void sample(FILE *csv)
     }
 }
 
-/* Everything that the recorder holds comes by radio. While the motors turn it still records, and the oldest rows
- * would be lost on the way. */
+/* Everything that the recorder holds comes by radio. While the motors turn it still records, and the oldest
+ * rows would be lost on the way. */
 static void dump(void)
 {
     const sim_time_t down = timeline_now() + DOWN_PATIENCE;
