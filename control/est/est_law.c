@@ -12,7 +12,6 @@
 #include <string.h>
 
 #include "control/between.h"
-
 #include "control/credible.h"
 #include "control/seconds.h"
 #include "control/thrust.h"
@@ -77,7 +76,7 @@ static float alone_mps2(const est_law_t *law, float authority_mps2_per_n)
     return sqrtf(AIR_MPS2 * AIR_MPS2 + hover_mps2);
 }
 
-/* By the thrust model; known in the air only. Without heights the height is too uncertain to tell. */
+/* Acceleration by the thrust model, known in the air only. Without heights the height does not tell that. */
 static modelled_motion_t modelled_motion(const est_law_t *law, const parameters_t *parameters, bool airborne)
 {
     const cascade_vehicle_t vehicle = vehicle_model(law, parameters);
@@ -401,9 +400,10 @@ static float speed_setpoint_mps(est_law_t *law, const parameters_t *parameters, 
     const float acts_s = law->heightless_s + (float)law->actuator.delay_us * 1.0e-6F;
     const float held_m = follows ? over_ground_to_come_m(law, gains, setpoint_m) : setpoint_m;
     const float wanted_mps = cascade_speed_to(gains, state, held_m);
-    return follows ? wanted_mps
-                   : terrain_keep_above_mps(state->height_m, law->estimator.ground_mps, acts_s, gains,
-                                            wanted_mps);
+    return (follows || law->heightless_s > HEIGHT_FRESH_S)
+               ? wanted_mps
+               : terrain_keep_above_mps(state->height_m, law->estimator.ground_mps, acts_s, gains,
+                                        wanted_mps);
 }
 
 /* The thrust on the ground: of the ramp, or of its end. */

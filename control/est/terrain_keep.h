@@ -40,7 +40,7 @@ float terrain_keep_setpoint_m(terrain_keep_t *keep, float reference_m, const ter
 /* The vertical speed wanted_mps, or what is needed above the ground. Ground that is thought to rise may be a
  * vehicle that sinks: either way the height shrinks by that. So it shrinks no faster than a brake of
  * EST_FALL_MPS2 can stop above TERRAIN_LEAST_M. ground_mps: how fast the ground rises, by heights and
- * estimated speed. acts_s: from the rays of the latest height until the command acts. */
+ * estimated speed; of a fresh height. acts_s: from its rays until the command acts. */
 float terrain_keep_above_mps(float height_m, float ground_mps, float acts_s, const cascade_gains_t *gains,
                              float wanted_mps);
 

@@ -1,7 +1,7 @@
 /* What breaks: a direction that is wrong. A tilt that is off by three degrees makes 0.3 m/s of
  * ground speed; so the direction is a probability, and both are looked at. Without an order "all mirrors
- * rise" explains a vehicle that sinks too: a ramp that is met obliquely has to be a likelier explanation than
- * one in a row, and est_law.c holds the vehicle above the ground where it is wrong. */
+ * rise" explains a vehicle that sinks too: an oblique ramp may be that. There terrain_keep.c stops it above
+ * the ground. */
 #include "control/est/terrain_ramp.h"
 
 #include <float.h>

@@ -127,6 +127,13 @@ class Ignored(unittest.TestCase):
         print("taken for a rising ground, lowest:", *(f"{height:.3f}" for height in lowest))
         self.assertGreater(min(lowest), 0.05)
 
+    def test_a_scanner_that_goes_silent_on_a_ramp_leaves_no_rise_behind(self):
+        """The rate of the ground from before counted on, and lifted it by up to 0.4 m."""
+        silent = {"plant.outage_start": 7.8, "plant.outage": 2.0}
+        highest = [max(altitude for altitude, _ in fly(["est-60cm-ramp", "--seed", str(seed)], THREE | silent)) for seed in range(1, 5)]
+        print("silent on the ramp, highest:", *(f"{altitude:.3f}" for altitude in highest))
+        self.assertLess(max(highest), REFERENCE_M + 0.12)
+
     def test_followed_it_goes_up(self):
         self.assertGreater(course(1, TERRAIN="FOLLOW"), 0.25)
 

@@ -1101,6 +1101,23 @@ void test_near_ground_that_seems_to_rise_an_ignoring_vehicle_is_braked_and_high_
     }
 }
 
+/* What the ground has done before the heights went is no rate any more: it lifted a vehicle by 0.4 m. */
+void test_without_fresh_heights_no_rate_of_the_ground_lifts_an_ignoring_vehicle(void)
+{
+    float thrust_n[2];
+
+    for (int rises = 0; rises < 2; rises++) {
+        setUp();
+        set(PARAMETER_TERRAIN, TERRAIN_IGNORE);
+        (void)hold_n(0.90F);
+        terrain_rises(0.0F, 0.5F);
+        ground_rose_mps((rises != 0) ? 0.5F : 0.0F);
+        height_was_s_ago(0.35F);
+        thrust_n[rises] = go_on_n(0.3F, 0.90F);
+    }
+    NEAR(thrust_n[0], thrust_n[1]);
+}
+
 /* ---- commands */
 
 void test_a_command_takes_effect_after_the_delay_and_beyond_the_deadband(void)
