@@ -219,6 +219,6 @@ def intervals(flown):
 
 
 def fails_by_chance(count):
-    """How often a flight breaks a forecast of so many figures that is right: one of them, or more, is above its interval. Figures of
-    one flight fail together now and then. As if each failed by itself it is more often, so this is the most."""
+    """How often a flight breaks a forecast of so many figures that is right: one of them, or more, is above its interval. This is
+    the most: it takes them for independent, and figures of one flight that fail together fail in fewer flights."""
     return 1.0 - (1.0 - (1.0 - COVERAGE) / 2.0)**count

@@ -584,7 +584,6 @@ static output_t *const *outputs_of(request_t *request)
 /* A flight that is refused leaves no file that it has made. */
 static int refuse(request_t *request)
 {
-
     output_undo(outputs_of(request), OUTPUTS);
     if (request->record_made) {
         rmdir(request->record_dir);
