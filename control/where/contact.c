@@ -68,14 +68,13 @@ static void watch_landing(contact_t *contact, const landing_signs_t *signs)
 {
     const flight_state_t state = signs->state;
     const bool lands = state == FLIGHT_LANDING || (state == FLIGHT_DESCENDING && contact->touching_s > 0.0F);
+    const bool sees = lands && signs->sees;
+    const bool unpowered = sees && signs->height_m < LOW_M && !signs->powered;
 
-    if (lands && signs->sees) {
-        contact->unpowered_s = signs->powered ? 0.0F : contact->unpowered_s + signs->step_s;
-        contact->touching_s = touchdown_time_s(contact->touching_s, signs->height_m, signs->rocks,
-                                               signs->step_s);
-    } else {
-        contact->touching_s = 0.0F;
-    }
+    contact->unpowered_s = unpowered ? contact->unpowered_s + signs->step_s : 0.0F;
+    contact->touching_s = sees ? touchdown_time_s(contact->touching_s, signs->height_m, signs->rocks,
+                                                  signs->step_s)
+                               : 0.0F;
 }
 
 void contact_watch(contact_t *contact, const landing_signs_t *signs)
@@ -97,5 +96,5 @@ bool contact_stops(const contact_t *contact, flight_state_t state)
 
 bool contact_ends_without_thrust(const contact_t *contact)
 {
-    return contact->gave_up || (contact->touching_s > 0.0F && contact->unpowered_s > UNPOWERED_S);
+    return contact->gave_up || contact->unpowered_s > UNPOWERED_S;
 }

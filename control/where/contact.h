@@ -29,7 +29,7 @@ typedef struct {
     bool lifting;      /* since the ground the vehicle has not left it yet, as far as known */
     bool gave_up;      /* TAKEOFF ended, and the vehicle had not left the ground */
     float touching_s;  /* time near the ground since a height of LANDING showed it, see touchdown.h */
-    float unpowered_s; /* how long it has had no thrust; valid while touching_s > 0 */
+    float unpowered_s; /* how long it has had no thrust while it lands, at a height that may be the ground's */
 } contact_t;
 
 /* What one cycle shows, after the supervisor's step. */
@@ -69,7 +69,8 @@ bool contact_lifts(const contact_t *contact);
 /* Heights or reference were lost before the vehicle left the ground: the thrust ramps down to 0. */
 bool contact_stops(const contact_t *contact, flight_state_t state);
 
-/* Without thrust it stands after a take-off that was given up, and after a landing. */
+/* Without thrust it stands after a take-off that was given up, and after a landing: also on one foot, or on a
+ * slope, where it shows more than level ground does. */
 bool contact_ends_without_thrust(const contact_t *contact);
 
 #endif

@@ -166,6 +166,7 @@ static const figure_t figures[] = {
     {"pin_stuck_length", "s", 0, LARGE, AT(pin_stuck_length_s), 1, "for how long"},
     {"imu_noise", "rad", 0, 1, IMU(angle_noise_rad), 1, "of roll and pitch, rms"},
     {"imu_spikes", "-", 0, 1, IMU(spike_probability), 1, "probability of a spike per angle"},
+    {"imu_spike_deg", "deg", 0, 180, IMU(spike_rad), DEG, "how far it is off, to either side"},
     {"attitude_burst_deg", "deg", -180, 180, IMU(attitude_burst_rad), DEG,
      "added to the attitude that the IMU tells"},
     {"attitude_burst_degps", "deg/s", -10000, 10000, IMU(attitude_burst_radps), DEG,

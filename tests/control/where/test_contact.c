@@ -138,6 +138,18 @@ void test_a_landing_ends_after_more_than_a_second_without_thrust(void)
     }
 }
 
+void test_without_thrust_it_stands_also_where_one_foot_or_a_slope_shows_more_than_level_ground(void)
+{
+    for (int height_mm = 10; height_mm < 120; height_mm += 5) {
+        setUp();
+        landing.powered = false;
+        for (int k = 0; k < 11; k++) {
+            (void)thrust_after_n(FLIGHT_LANDING, 0.001F * (float)height_mm);
+        }
+        TEST_ASSERT_EQUAL_MESSAGE(height_mm < 90, contact_ends_without_thrust(&contact), "height");
+    }
+}
+
 static void watch(flight_state_t state, uint32_t state_us)
 {
     contact_watch(&contact, &(landing_signs_t){.state = state, .state_us = state_us});
