@@ -319,6 +319,13 @@ class Saying(unittest.TestCase):
         self.assertEqual(named("--seed", "3"), ["missed-3.txt"])
         self.assertEqual(named("--only", "edges", "--share", "0.02"), ["missed-1-only-edges-share-0.02.txt"])
 
+    def test_a_part_of_the_musts_does_not_go_into_the_page(self):
+        for words in (("--only", "edges"), ("--share", "0.1"), ("--fly", "a-long-slope/47/EST")):
+            with self.assertRaises(SystemExit) as end, contextlib.redirect_stderr(io.StringIO()) as err, mock.patch.object(survey, "write") as written:
+                musts.main([*words, "--page", "--out", str(self.dir), "--program", PROGRAM])
+            self.assertEqual((end.exception.code, written.call_count), (2, 0), words)
+            self.assertIn("--page writes what a whole run found: leave --only, --share and --fly", err.getvalue())
+
     def test_the_page_has_the_blocks_that_the_command_writes(self):
         copy = self.dir / "page.md"
         shutil.copy(survey.PAGE, copy)

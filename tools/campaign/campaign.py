@@ -94,6 +94,13 @@ def surveyed(arguments):
     return next(((name, getattr(arguments, name)) for name in survey.RUNS if getattr(arguments, name)), None)
 
 
+def whole(arguments):
+    """Whether this is a run that a page shows: nothing that was typed leaves flights out, adds some, or changes them."""
+    other = (arguments.law_words, arguments.set_words, arguments.plan, arguments.vehicle, arguments.runs, arguments.only, arguments.fly)
+    elsewhere = arguments.held_out and (arguments.healthy or arguments.battery)     # the page has lies alone of that part
+    return arguments.seed == 1 and not any(other) and not elsewhere
+
+
 def names(known):
     def read(text):
         wanted = list(known) if text == "all" else text.split(",")
@@ -215,12 +222,9 @@ def read_arguments(argv):
         arguments = resumed(parser, arguments, words)
     arguments.out = arguments.out or folder_of(words)
     choose(parser, arguments)
-    if surveyed(arguments) and arguments.page and (set(arguments.laws), arguments.seed, arguments.only) != (set(plan.LAWS), 1, []):
-        parser.error("--page goes with all situations, the default laws and seed")
-    of_control = (set(arguments.laws), set(arguments.sets), arguments.runs, arguments.seed)
-    if not surveyed(arguments) and arguments.page and of_control != (
-            set(plan.LAWS), set(plan.DEFAULT_SETS), None, 1):
-        parser.error("--page goes with the default laws, sets, runs and seed")
+    if arguments.page and not whole(arguments):
+        parser.error("--page writes what a whole run found: it goes alone, or with --healthy, --lies, --lies --held-out or --battery. Leave the other "
+                     "options, or leave --page")
     return arguments
 
 
@@ -309,7 +313,7 @@ def run_survey(arguments):
     """The exit status."""
     name, runs = surveyed(arguments)
     return survey.run(name, arguments.laws, arguments.seed, runs, arguments.held_out, arguments.only, str(arguments.program.resolve()),
-                      arguments.out, arguments.scheduler, arguments.page)
+                      arguments.out, whole(arguments), arguments.scheduler, arguments.page)
 
 
 def fly_one(arguments):
@@ -333,7 +337,7 @@ def run(arguments):
     print(verdict.text(found), end="\n\n")
     print(worst(program, planned, store.known), end="\n\n")
     write(arguments, groups, rows)
-    otherwise = compare_page(rows, arguments.page) if page.complete(rows, arguments.seed) else []
+    otherwise = compare_page(rows, arguments.page) if whole(arguments) else []
     if otherwise:
         print("docs/control.md is otherwise; --page writes it:", *otherwise, sep="\n")
     return 1 if otherwise or any(one.missed for one in found) else 0

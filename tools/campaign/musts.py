@@ -11,7 +11,7 @@ what it must not, or when its figure is beyond the bound. The rate of these is t
   OPEN     so many flights do not tell
 
 --share 0.1 flies a tenth of the flights. Each flight is kept in build/campaign/musts, by program and draw: a rerun flies what is missing there.
---page writes the table of docs/reliability.md. Exit status: 0; 1 a must is MISSED; 2 usage or a program that does not fly.
+--page, of all musts and flights, writes the table of docs/reliability.md. Exit status: 0; 1 a must is MISSED; 2 usage or a program that does not fly.
 """
 import argparse
 import hashlib
@@ -275,6 +275,8 @@ def main(argv=None):
     parser.add_argument("--program", type=Path, default=fleet.ROOT / "build/plomada")
     parser.add_argument("--out", type=Path, default=fleet.ROOT / "build/campaign/musts", metavar="DIR")
     arguments = parser.parse_args(argv)
+    if arguments.page and (arguments.only or arguments.share != 1.0 or arguments.fly):
+        parser.error("--page writes what a whole run found: leave --only, --share and --fly, or leave --page")
     program = str(arguments.program.resolve())
     try:
         if "EST-FRONT" not in plan.LAWS:
