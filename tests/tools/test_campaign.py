@@ -216,7 +216,13 @@ class Keeping(Case):
         self.campaign(*self.LESS, "--runs", "3")
         with self.program.open("a", encoding="utf-8") as file:
             file.write("# a line more\n")
-        self.assertEqual(self.campaign(*self.LESS, "--runs", "3")[3], 6)
+        told = "the program is another one than that of 6 kept flights: they are flown again\n"
+        shutil.copytree(self.out, self.dir / "kept")
+        _, out, _, flown = self.campaign(*self.LESS, "--runs", "4")
+        self.assertEqual((out.count(told), flown), (1, 8), out)
+        _, out, _, flown = self.campaign(*self.LESS, "--runs", "5")     # by the same program: no word
+        self.assertEqual((out.count("another one"), flown), (0, 2), out)
+        self.assertTrue(self.typed("--resume", "--out", str(self.dir / "kept"))[1].startswith(told))
 
     def test_a_broken_flight_is_named_and_the_others_are_kept(self):
         self.tell("broken", 25)

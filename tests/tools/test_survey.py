@@ -355,6 +355,10 @@ class Saying(unittest.TestCase):
         status, again, err = self.campaign(*words)
         self.assertEqual((status, again), (0, out))
         self.assertIn(f"0 flights flown, {len(stored)} known", err)
+        kept = (self.dir / "out/lies.jsonl").read_text().splitlines(keepends=True)[:3]
+        by_another = [line.replace(fleet.digest(PROGRAM)[:12], "0" * 12).replace('"key": "', '"key": "0') for line in kept]
+        (self.dir / "out/lies.jsonl").write_text("".join(by_another))
+        self.assertIn("the program is another one than that of 3 kept flights: they are flown again\n", self.campaign(*words)[1])
         for record in stored[:4]:
             with contextlib.redirect_stdout(io.StringIO()) as told:
                 again = shlex.split(shlex.split(record["command"])[2].removeprefix("ARGS="))

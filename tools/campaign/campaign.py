@@ -252,6 +252,7 @@ def fly_missing(program, planned, store, scheduler=None):
     missing = [(key, words) for key, (_, words) in planned.items() if key not in store.known]
     if not missing:
         return 0
+    store.tell_of_another(program, {key: label for key, (label, _) in planned.items()})
     progress, provenance = fleet.Progress(len(missing)), fleet.provenance(program)
     with fleet.fleet(scheduler) as client:
         for key, figures in fleet.fly_all(client, program, missing):

@@ -94,6 +94,10 @@ class Planned:
         return f"{self.situation.slug}/{self.number}/{self.law}"
 
     @property
+    def label(self):
+        return {"flight": self.name, "seed": self.seed}
+
+    @property
     def command(self):
         return f"build/venv/bin/python tools/campaign/musts.py --seed {self.seed} --fly {self.name}"
 
@@ -158,10 +162,11 @@ def fly(program, flights, store):
     keys = {flight.name: flight.key(digest) for flight in flights}
     missing = {keys[flight.name]: flight for flight in flights if keys[flight.name] not in store.known}
     if missing:
-        progress = fleet.Progress(len(missing))
+        store.tell_of_another(program, {keys[flight.name]: flight.label for flight in flights})
+        progress, provenance = fleet.Progress(len(missing)), fleet.provenance(program)
         with fleet.fleet() as client:
             for key, figures in fleet.fly_all(client, program, [(key, flight.flight.words, flight.flight.text) for key, flight in missing.items()]):
-                store.add(key, {"flight": missing[key].name, "seed": missing[key].seed, "command": missing[key].command}, figures)
+                store.add(key, missing[key].label | provenance | {"command": missing[key].command}, figures)
                 progress.step()
     return [(flight, store.known[keys[flight.name]]) for flight in flights]
 
