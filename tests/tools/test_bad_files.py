@@ -68,6 +68,27 @@ class Files(unittest.TestCase):
         self.assertIn(self.plomada(*flight, "--csv", "left.csv").returncode, (0, 1))
         self.assertGreater((self.dir / "left/flight.plomada").stat().st_size, 1000)
 
+    def test_what_a_refused_command_was_to_replace_is_not_lost(self):
+        """Files were emptied first, and the command refused then: by its limits, a device, a line of the log or another file."""
+        (self.dir / "bad.limits").write_text("no limits")
+        (self.dir / "torn.csv").write_text((self.dir / "flown.csv").read_text() + "9 m\n")
+        (self.dir / "cut").write_bytes(re.sub(rb"first_row_ns \d+", b"first_row_ns 900000000000000000", (self.dir / "run/flight.plomada").read_bytes()))
+        (self.dir / "kept.md").mkdir(exist_ok=True)
+        sensor, end = os.openpty()
+        self.addCleanup(os.close, sensor)
+        self.addCleanup(os.close, end)
+        flight = ("fly", "./own.scenario", "--csv", "kept", "--trace", "kept.trace")
+        for words, reason in (((*flight, "--limits", "bad.limits"), "bad.limits: not the limits"), ((*flight, "--imu", "/nowhere"), "/nowhere"),
+                              (("replay", "torn.csv", "--csv", "kept"), "not as many cells"), (("replay", "cut", "--csv", "kept"), "ends before its first row"),
+                              (("board", "--laser", "l", "--imu", "i", "--xbee", "x", "--pulses", "kept", "--bits", "imu=/nowhere/i"), "/nowhere/i"),
+                              (("scip", "record", os.ttyname(end), "kept", "--force"), "kept.md: Is a directory")):
+            with self.subTest(words):
+                (self.dir / "kept").write_text("kept")
+                (self.dir / "kept.trace").write_text("kept")
+                self.refused(self.plomada(*words), reason)
+                self.assertEqual([(self.dir / name).read_text() for name in ("kept", "kept.trace")], ["kept", "kept"])
+                self.assertFalse((self.dir / "kept.tx").exists())
+
     def test_an_output_that_is_there_already_holds_the_new_flight_alone(self):
         (self.dir / "old.csv").write_bytes((self.dir / "flown.csv").read_bytes() + b"more" * 1000)
         self.assertIn(self.plomada("fly", "./own.scenario", "--csv", "old.csv").returncode, (0, 1))

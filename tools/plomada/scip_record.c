@@ -7,6 +7,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "output.h"
 #include "scanner.h"
 #include "scip.h"
 #include "drivers/scip_layout.h"
@@ -14,6 +15,7 @@
 #define START_PATIENCE_S 30.0
 #define TEXT_MAX 1024
 #define BURST_US 2000
+#define FILES 4
 #define FLUSH_US 1000000 /* what the end of this program or of the disk may cost */
 
 static const char usage[] =
@@ -158,45 +160,30 @@ static bool read_arguments(recording_t *recording, int argc, char **argv)
 
 /* ---- files ---- */
 
-static void path_of(const recording_t *recording, const char *suffix, char *path, size_t size)
-{
-    snprintf(path, size, "%s%s", recording->path, suffix);
-}
-
-static FILE *open_file(const recording_t *recording, const char *suffix)
-{
-    char path[4096];
-    FILE *file;
-
-    path_of(recording, suffix, path, sizeof path);
-    file = fopen(path, recording->force ? "wb" : "wbx");
-    if (file == NULL) {
-        complain(errno == EEXIST ? "is there already; --force overwrites it" : strerror(errno), path);
-    }
-    return file;
-}
-
-/* Nothing is created when one of the files is there. */
-static bool may_create(const recording_t *recording)
-{
-    static const char *const suffixes[] = {"", ".tx", ".csv", ".md"};
-    char path[4096];
-
-    for (size_t i = 0; i < sizeof suffixes / sizeof suffixes[0] && !recording->force; i++) {
-        path_of(recording, suffixes[i], path, sizeof path);
-        if (access(path, F_OK) == 0) {
-            return complain("is there already; --force overwrites it", path);
-        }
-    }
-    return true;
-}
-
+/* All of them, or none. */
 static bool open_files(recording_t *recording)
 {
-    return may_create(recording) && (recording->rx = open_file(recording, "")) != NULL &&
-           (recording->tx = open_file(recording, ".tx")) != NULL &&
-           (recording->csv = open_file(recording, ".csv")) != NULL &&
-           (recording->certificate = open_file(recording, ".md")) != NULL;
+    static const char *const suffixes[FILES] = {"", ".tx", ".csv", ".md"};
+    static char path[FILES][4096];
+    static output_t output[FILES];
+    output_t *outputs[FILES];
+
+    for (size_t i = 0; i < FILES; i++) {
+        snprintf(path[i], sizeof path[i], "%s%s", recording->path, suffixes[i]);
+        if (!recording->force && access(path[i], F_OK) == 0) {
+            return complain("is there already; --force overwrites it", path[i]);
+        }
+        output[i].path = path[i];
+        outputs[i] = &output[i];
+    }
+    if (!output_open_all(outputs, FILES)) {
+        return false;
+    }
+    recording->rx = output[0].file;
+    recording->tx = output[1].file;
+    recording->csv = output[2].file;
+    recording->certificate = output[3].file;
+    return true;
 }
 
 static bool close_file(FILE *file)
@@ -373,7 +360,6 @@ static int run(recording_t *recording)
         return 2;
     }
     if (!open_files(recording)) {
-        (void)close_files(recording);
         scanner_close();
         return 2;
     }
