@@ -89,6 +89,17 @@ class Files(unittest.TestCase):
                 self.assertEqual([(self.dir / name).read_text() for name in ("kept", "kept.trace")], ["kept", "kept"])
                 self.assertFalse((self.dir / "kept.tx").exists())
 
+    def test_a_folder_where_a_file_is_expected_is_named_as_one(self):
+        """It was read as an empty file: `no figure of the plant in it`, `no row of a #LOG dump in it`."""
+        (self.dir / "folder").mkdir(exist_ok=True)
+        flight = ("fly", "./own.scenario")
+        for words in ((*flight, "--vehicle"), (*flight, "--place"), (*flight, "--limits"), (*flight, "--storage"), (*flight, "--csv"), ("log",),
+                      ("replay", "run", "--csv"), ("scip", "decode")):
+            with self.subTest(words):
+                self.refused(self.plomada(*words, "folder"), "folder: Is a directory")
+        self.refused(self.plomada("fly", "./folder"), "./folder: Is a directory")
+        self.refused(self.plomada("replay", "folder"), "folder: a folder without a recording: no flight.plomada in it")
+
     def test_an_output_that_is_there_already_holds_the_new_flight_alone(self):
         (self.dir / "old.csv").write_bytes((self.dir / "flown.csv").read_bytes() + b"more" * 1000)
         self.assertIn(self.plomada("fly", "./own.scenario", "--csv", "old.csv").returncode, (0, 1))

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "input.h"
 #include "sim/costs.h"
 #include "sim/timing/instruments.h"
 
@@ -18,7 +19,7 @@ static struct {
 
 bool measure_read_limits(const char *path)
 {
-    FILE *in = path == NULL ? NULL : fopen(path, "r");
+    FILE *in = path == NULL ? NULL : input_open(path);
 
     measure.limit_count = 0;
     if (in != NULL) {

@@ -123,7 +123,7 @@ static const char *file_of(const char *given)
     return path;
 }
 
-static tape_t *load(const char *path)
+static tape_t *load(const char *given, const char *path)
 {
     const char *error = NULL;
     tape_t *tape;
@@ -131,7 +131,10 @@ static tape_t *load(const char *path)
 
     in = fopen(path, "r");
     if (in == NULL) {
-        complain(strerror(errno), path);
+        const bool in_folder = errno == ENOENT && strcmp(given, path) != 0;
+
+        complain(in_folder ? "a folder without a recording: no " RECORDING_NAME " in it" : strerror(errno),
+                 given);
         return NULL;
     }
     tape = tape_read(in, &error);
@@ -255,7 +258,7 @@ static int run(request_t *request)
     if (log != NULL) {
         return run_log(request, log);
     }
-    tape_t *tape = load(uses[0].path);
+    tape_t *tape = load(request->path, uses[0].path);
 
     if (tape == NULL || !retype(request, tape)) {
         return 2;

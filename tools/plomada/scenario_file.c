@@ -8,6 +8,7 @@
 #include <strings.h>
 
 #include "control/parameters.h"
+#include "input.h"
 #include "nearest.h"
 #include "sim/scenarios/flight.h"
 #include "sim/scenarios/plant.h"
@@ -392,7 +393,7 @@ bool scenario_file_named(const char *name)
 
 const scenario_t *scenario_file_read(const char *command, const char *path)
 {
-    FILE *in = fopen(path, "r");
+    FILE *in = input_open(path);
     char text[LINE_MAX_OCTETS];
     const char *error = in == NULL ? strerror(errno) : NULL;
 
@@ -405,7 +406,7 @@ const scenario_t *scenario_file_read(const char *command, const char *path)
         error = read_line(text + mark, feof(in) != 0);
     }
     if (in != NULL && error == NULL && ferror(in) != 0) {
-        error = strerror(errno); /* a directory */
+        error = strerror(errno);
         reading.line = 0;
     }
     if (reading.scenario.name == NULL) {
