@@ -367,6 +367,15 @@ class Keeping(Case):
             campaign.main(self.argv("--plan", str(file)))
         self.assertIn("is there already", err.getvalue())
 
+    def test_a_law_of_a_plan_that_the_program_has_too_is_refused(self):
+        """It was flown in place of the program's, whose name its figures then had."""
+        file = self.dir / "own.json"
+        file.write_text(json.dumps({"laws": {"GLIDE": {"settings": {"LAW": "EST"}}}}))
+        with contextlib.redirect_stderr(io.StringIO()) as err, self.assertRaises(SystemExit) as end:
+            campaign.main(self.argv("--plan", str(file), "--law", "GLIDE"))
+        self.assertEqual((end.exception.code, self.flown()), (2, 0))
+        self.assertIn(f"--plan {file}: law GLIDE is one of the program's own; give it another name", err.getvalue())
+
     def test_a_law_that_only_the_program_has_is_flown_by_its_name(self):
         status, out, _, flown = self.campaign("--law", "GLIDE,PID", "--set", "nominal", "--runs", "2")
         self.assertEqual((status, flown), (0, 4), out)

@@ -173,7 +173,7 @@ def choose(parser, arguments):
     """Laws, sets and assignments; what --plan adds, and the program's own laws that are named, are known from here on."""
     if arguments.plan:
         try:
-            plan.extend(json.loads(arguments.plan.read_text(encoding="utf-8")))
+            plan.extend(json.loads(arguments.plan.read_text(encoding="utf-8")), plan.of_program(arguments.program))
         except (OSError, ValueError, TypeError, KeyError) as error:
             parser.error(f"--plan {arguments.plan}: {error}")
     if not set(words_of_laws(arguments)) <= {*plan.LAWS, "all"}:
