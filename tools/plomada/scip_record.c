@@ -10,6 +10,7 @@
 #include "output.h"
 #include "scanner.h"
 #include "scip.h"
+#include "scip_reader.h"
 #include "drivers/scip_layout.h"
 
 #define START_PATIENCE_S 30.0
@@ -68,7 +69,8 @@ typedef struct {
     burst_t burst;
     long long flushed_us;
     unsigned long flushed_scans;
-    bool failed; /* a file cannot be written */
+    bool failed;          /* a file cannot be written */
+    scip_reader_t reader; /* of what is recorded: it counts what `scip decode` will find */
     char version[TEXT_MAX], parameters[TEXT_MAX];
 } recording_t;
 
@@ -232,7 +234,8 @@ static void write_head(const recording_t *recording, FILE *out)
     fprintf(out, "| rate of the stream | %lu bit/s, %.2f scans per second of the sensor's clock |\n",
             scanner_rate(), scanner_scans_per_s());
     fprintf(out, "| octets | %lu from the sensor, %lu to it |\n", recording->rx_octets, recording->tx_octets);
-    fprintf(out, "| scans | %lu good, %lu replies or scans damaged |\n", scanner_scans(), scanner_damaged());
+    fprintf(out, "| scans | %lu good, %lu replies or scans damaged |\n", recording->reader.totals.scans,
+            scip_reader_damaged(&recording->reader));
 }
 
 /* Over what was written before. `whole`: the recording came to its end. */
@@ -258,12 +261,12 @@ static void write_certificate(const recording_t *recording, bool whole)
 
 static void show_progress(recording_t *recording, long long t_us)
 {
-    const unsigned long scans = scanner_scans();
+    const unsigned long scans = recording->reader.totals.scans;
     const double lasted_s = (double)(t_us - recording->flushed_us) * 1e-6;
 
     fprintf(stderr, "%s%6.1f s: %.1f scans/s, %lu scans, %lu damaged%s", isatty(STDERR_FILENO) ? "\r" : "",
             (double)t_us * 1e-6, (double)(scans - recording->flushed_scans) / lasted_s, scans,
-            scanner_damaged(), isatty(STDERR_FILENO) ? "" : "\n");
+            scip_reader_damaged(&recording->reader), isatty(STDERR_FILENO) ? "" : "\n");
     recording->flushed_scans = scans;
 }
 
@@ -277,6 +280,12 @@ static void bring_up_to_date(recording_t *recording)
         return;
     }
     write_certificate(recording, false);
+}
+
+static void count_alone(void *context, const scip_scan_t *scan)
+{
+    (void)context;
+    (void)scan;
 }
 
 static void keep(void *context, bool from_sensor, long long t_us, const unsigned char *octets, size_t count)
@@ -293,6 +302,9 @@ static void keep(void *context, bool from_sensor, long long t_us, const unsigned
         *burst = (burst_t){from_sensor, t_us, *total, 0};
     }
     fwrite(octets, 1, count, from_sensor ? recording->rx : recording->tx);
+    if (from_sensor) {
+        scip_reader_feed(&recording->reader, octets, count);
+    }
     burst->length += count;
     *total += count;
     if (t_us - recording->flushed_us >= FLUSH_US) {
@@ -328,7 +340,7 @@ static bool record(recording_t *recording)
         run_to_the_end(recording);
     }
     whole = !scanner_is_gone() && !recording->failed;
-    if (whole && scanner_scans() > 0 && scanner_stop()) {
+    if (whole && recording->reader.totals.scans > 0 && scanner_stop()) {
         scanner_ask(SCIP_VERSION, recording->version, sizeof recording->version);
         scanner_ask(SCIP_PARAMETERS, recording->parameters, sizeof recording->parameters);
     }
@@ -344,7 +356,7 @@ static bool record(recording_t *recording)
 static void tell(const recording_t *recording)
 {
     fprintf(stderr, "%sscans: %lu\ndamaged: %lu\noctets: %lu\n", isatty(STDERR_FILENO) ? "\n" : "",
-            scanner_scans(), scanner_damaged(), recording->rx_octets);
+            recording->reader.totals.scans, scip_reader_damaged(&recording->reader), recording->rx_octets);
 }
 
 static int run(recording_t *recording)
@@ -352,6 +364,7 @@ static int run(recording_t *recording)
     const char *error;
     bool whole, written;
 
+    scip_reader_init(&recording->reader, count_alone, NULL);
     recording->scanner.tap = keep;
     recording->scanner.context = recording;
     error = scanner_open(&recording->scanner);
@@ -372,7 +385,7 @@ static int run(recording_t *recording)
         complain("not written whole", recording->path);
         return 2;
     }
-    return whole && scanner_scans() > 0 ? 0 : 1;
+    return whole && recording->reader.totals.scans > 0 ? 0 : 1;
 }
 
 int scip_record(int argc, char **argv)
