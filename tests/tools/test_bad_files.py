@@ -234,6 +234,16 @@ class Files(unittest.TestCase):
             with self.subTest(reason):
                 self.refused(self.replay(text.encode()), reason)
 
+    def test_a_dump_in_a_console_is_not_passed_over(self):
+        """The telemetry around it was replayed in its place: a height in 0.2 s, and level assumed."""
+        console = (self.dir / "console.log").read_bytes()
+        self.assertIn(b"\nalt:", console)
+        for text in (console, console[console.index(b"OK LOG 0 "):]):
+            self.refused(self.replay(text), "OK LOG: a dump of #LOG; type `plomada log` with this file, and replay the CSV that it makes")
+        self.assertEqual(self.replay(b"\n".join(line for line in console.splitlines() if not re.match(rb"OK LOG [1-9]", line)) + b"\n").returncode, 0)
+        self.assertEqual(self.plomada("log", "console.log", "--force").returncode, 0)
+        self.assertEqual(self.plomada("replay", "console.csv", "--csv", os.devnull).returncode, 0)
+
     def test_a_log_from_another_system_is_the_same_log(self):
         self.assertEqual(self.replay((self.dir / "flown.csv").read_bytes()).returncode, 0)
         as_it_is = (self.dir / "replayed.csv").read_bytes()

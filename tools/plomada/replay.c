@@ -30,7 +30,7 @@ static const char usage[] =
     "this one moved\n"
     "the vehicle. thrust_n is what it would command next, flown_n what was; `make plot` draws both. What is "
     "not there is\n"
-    "named on stderr.\n\n"
+    "named on stderr. A dump of #LOG is refused: `plomada log` makes a CSV of it.\n\n"
     "  --csv FILE          the log (default: stdout). Never the RECORDING itself\n"
     "  --set NAME=VALUE    a telecommand parameter in place of what was typed for it. The vehicle does not "
     "answer to what\n"
