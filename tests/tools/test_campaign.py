@@ -27,6 +27,7 @@ sys.path.insert(0, str(CAMPAIGN.parent))
 import bound  # noqa: E402
 import campaign  # noqa: E402
 import fleet  # noqa: E402
+import musts  # noqa: E402
 import page  # noqa: E402
 import plan  # noqa: E402
 import situations  # noqa: E402
@@ -258,10 +259,21 @@ class Keeping(Case):
         for name, body in (("silent", "exit 0"), ("prose", 'for p; do :; done; echo fine > "$p"')):
             self.program.write_text(f"#!/bin/sh\n{body}\n", encoding="utf-8")
             self.assertEqual(self.campaign(*self.LESS, "--runs", "1")[0], 2, name)
+            self.assertFalse(self.out.exists(), name)
         self.program.unlink()
         status, _, err, _ = self.campaign(*self.LESS, "--runs", "1")
         self.assertEqual(status, 2)
         self.assertIn(str(self.program), err)
+
+    def test_a_campaign_that_cannot_begin_leaves_no_folder(self):
+        """An empty one stayed, and --resume without --out went on with it."""
+        for words in (("--lies", "1", "--only", "lice"), ("--law", "EST", "--vehicle", str(self.dir / "none.json")), ("--law", "EST", "--program", "/none"),
+                      ("--healthy", "1", "--program", str(self.dir))):
+            self.assertEqual(self.typed("--program", str(self.program), "--out", str(self.out), *words)[::3], (2, 0), words)
+            self.assertFalse(self.out.exists(), words)
+        with contextlib.redirect_stderr(io.StringIO()):
+            self.assertEqual(musts.main(["--only", "edges", "--program", "/none", "--out", str(self.out)]), 2)
+        self.assertFalse(self.out.exists())
 
     def test_control_c_keeps_what_was_flown(self):
         self.tell("slow")

@@ -15,6 +15,7 @@ those parts of the ranges that nothing may be tuned on.
 docs/campaign.md tells more. Exit status: 0; 1 a law does not reach what it must, or the page says otherwise; 2 usage or a program that does not fly; 130 interrupted.
 """
 import argparse
+import contextlib
 import hashlib
 import json
 import os
@@ -357,9 +358,17 @@ def remember(arguments, argv):
                                "--out DIR")
         for name in changed_of(files):
             print(f"{name} was changed: what it changes is flown anew", file=sys.stderr)
-    arguments.out.mkdir(parents=True, exist_ok=True)
     files = {os.path.abspath(name): fleet.digest(name) for name in (arguments.plan, arguments.vehicle) if name}
+    arguments.out.mkdir(parents=True, exist_ok=True)
     fleet.write_whole(path, json.dumps({"words": words, "files": files}))
+
+
+def forget(out):
+    """Of a campaign that could not fly: without a flight that is kept there is nothing to go on with."""
+    if not any(out.glob("*.jsonl")):
+        (out / BEGUN).unlink(missing_ok=True)
+        with contextlib.suppress(OSError):      # of other campaigns, or not there
+            out.rmdir()
 
 
 def main(argv=None):
@@ -368,7 +377,12 @@ def main(argv=None):
         if arguments.fly:
             return fly_one(arguments)
         remember(arguments, argv)
-        return run_survey(arguments) if surveyed(arguments) else run(arguments)
+        try:
+            return run_survey(arguments) if surveyed(arguments) else run(arguments)
+        except Exception:
+            if not arguments.resume:
+                forget(arguments.out)
+            raise
     except (fleet.Broken, situations.Wrong, OSError) as error:
         print(f"campaign: {error}", file=sys.stderr)
         return 2

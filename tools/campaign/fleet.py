@@ -165,7 +165,12 @@ class Store:
         return self
 
     def __exit__(self, *_):
+        """Where nothing was ever kept, nothing stays."""
         self.file.close()
+        if self.path.stat().st_size == 0:
+            self.path.unlink()
+            with contextlib.suppress(OSError):      # there is more in it
+                self.path.parent.rmdir()
 
     def tell_of_another(self, program, wanted):
         """Says so when some of the flights {key: label} are kept, but by another program."""
