@@ -42,6 +42,16 @@ class Names(unittest.TestCase):
         self.assertIn("a b/v.json", self.words("tune", "VEHICLE=a b/v.json"))
         self.assertIn(f"-DPLOMADA_LAW={self.file}", self.words("mine", f"FILE={self.file}"))
 
+    def test_a_law_in_a_file_whose_name_has_blanks_is_built(self):
+        """By what `make mine` gives to CMake, in another tree and without its optimizer."""
+        shutil.copy(ROOT / "examples/my_law/law_mine.c", self.file)
+        words = self.words("mine", f"FILE={self.file}")
+        words = [word.replace("build-mine", str(self.dir / "tree")) for word in words[:words.index("--build")]]
+        subprocess.run(["cmake", *words, "-DCMAKE_BUILD_TYPE=Debug"], cwd=ROOT, check=True, capture_output=True)
+        subprocess.run(["cmake", "--build", self.dir / "tree", "--target", "control"], check=True, capture_output=True)
+        self.assertIn(b"law_mine_step", (self.dir / "tree/libcontrol.a").read_bytes())
+        self.assertEqual(len(list((self.dir / "tree").rglob("my_file.c.o")) + list((self.dir / "tree").rglob("my file.c.o"))), 1)
+
     def test_several_logs_are_several_words(self):
         logs = [str(self.dir / name) for name in ("x.csv", "y.csv")]
         for log in logs:
