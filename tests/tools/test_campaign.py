@@ -379,6 +379,13 @@ class Keeping(Case):
             campaign.main(self.argv("--plan", str(file)))
         self.assertIn("is there already", err.getvalue())
 
+    def test_a_drawn_set_says_what_it_does_not_take_from_the_file_of_a_vehicle(self):
+        file = self.dir / "vehicle.json"
+        file.write_text('{"plant.hover_thrust": {"value": 9}, "plant.tau": {"value": 0.2}, "plant.sag_power": {"value": 1}}')
+        _, out, _, flown = self.campaign("--vehicle", str(file), "--law", "EST", "--set", "nominal,untrimmed,glitches", "--runs", "1")
+        self.assertEqual((flown, [line for line in out.splitlines() if str(file) in line and line.startswith("set ")]),
+                         (3, [f"set untrimmed is not around {file}: it has figures of its own for hover_thrust, tau"]))
+
     def test_a_law_of_a_plan_that_the_program_has_too_is_refused(self):
         """It was flown in place of the program's, whose name its figures then had."""
         file = self.dir / "own.json"

@@ -235,6 +235,13 @@ def with_own(words, typed, vehicle):
     return [words[0], *(["--vehicle", str(vehicle.resolve())] if vehicle else []), *words[1:], *own]
 
 
+def redrawn(sets, vehicle):
+    """{set: the figures of the vehicle's file that it draws anew}, of those that do."""
+    known = set(re.findall(r'"plant\.(\w+)"', vehicle.read_text(encoding="utf-8")))
+    found = {name: sorted(known & set(plan.plant(name, 1, 1))) for name in sets}
+    return {name: figures for name, figures in found.items() if figures}
+
+
 def flights(program, laws, sets, seed, runs, typed=None, vehicle=None):
     """{key: (label, arguments)} of the whole campaign."""
     digest = fleet.digest(program) + (fleet.digest(vehicle) if vehicle else "")
@@ -327,6 +334,8 @@ def fly_one(arguments):
 def run(arguments):
     """The exit status."""
     program = str(arguments.program.resolve())
+    for name, figures in redrawn(arguments.sets, arguments.vehicle).items() if arguments.vehicle else ():
+        print(f"set {name} is not around {arguments.vehicle}: it has figures of its own for {', '.join(figures)}")
     laws = {name: plan.LAWS[name] for name in arguments.laws}
     planned = flights(program, laws, arguments.sets, arguments.seed, arguments.runs, arguments.typed, arguments.vehicle)
     with fleet.Store(arguments.out / "flights.jsonl") as store:
