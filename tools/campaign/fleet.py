@@ -164,10 +164,10 @@ class Store:
             self.file.write("\n")
         return self
 
-    def __exit__(self, *_):
-        """Where nothing was ever kept, nothing stays."""
+    def __exit__(self, failed, *_):
+        """What failed before anything was kept leaves nothing."""
         self.file.close()
-        if self.path.stat().st_size == 0:
+        if failed and self.path.stat().st_size == 0:
             self.path.unlink()
             with contextlib.suppress(OSError):      # there is more in it
                 self.path.parent.rmdir()
@@ -176,7 +176,7 @@ class Store:
         """Says so when some of the flights {key: label} are kept, but by another program."""
         own = digest(program)[:12]
         missing = {json.dumps(label) for key, label in wanted.items() if key not in self.known}
-        names = next(iter(wanted.values()))
+        names = next(iter(wanted.values()), {})
         theirs = {json.dumps({name: record.get(name) for name in names}) for record in self.labels if record.get("program", own) != own}
         if missing & theirs:
             print(f"the program is another one than that of {len(missing & theirs)} kept flights: they are flown again", flush=True)
