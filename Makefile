@@ -14,8 +14,10 @@ jobs = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 ctest = python3 -B tests/run.py
 # A new build tree is Ninja's where Ninja is installed; a tree that exists keeps what it was made with.
 cmake = CMAKE_GENERATOR="$$(command -v ninja >/dev/null && echo Ninja || echo Unix Makefiles)" cmake -S .
-# LOG is one file, whose name may have blanks, or several.
-logs = if [ -e "$(LOG)" ]; then set -- "$(LOG)"; else set -- $(LOG); fi
+# LOG is one file, whose name may have blanks, or several, which a pattern may name.
+logs = if [ -e "$(LOG)" ]; then set -- "$(LOG)"; else set -- $(LOG); fi; \
+    for log; do [ $$\# -eq 1 ] || [ -e "$$log" ] || \
+        { echo "make $@: LOG: no file $$log. Where LOG names several files, none of them may have a blank in its name: rename it" >&2; exit 2; }; done
 # FILE with its whole name; abspath would take a name with blanks for several. No FILE, no word.
 file = $(if $(FILE),"$$(realpath -m -- "$(FILE)")")
 # The two build trees of the tests. Both build everything once: test and test-long share them.

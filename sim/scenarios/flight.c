@@ -800,26 +800,28 @@ static bool lay_place(const char *text, unsigned long seed)
     return text == NULL || place_file_read(&flight.place, text, seed);
 }
 
-bool flight_run(const scenario_t *scenario, const flight_options_t *options, flight_result_t *result,
-                const char **error)
+const char *flight_prepare(const scenario_t *scenario, const flight_options_t *options)
+{
+    const char *error = open_devices(options);
+
+    memset(&flight, 0, sizeof flight);
+    if (error == NULL &&
+        !lay_place(options->place != NULL ? options->place : scenario->place, options->seed)) {
+        error = flight.place.message;
+    }
+    return error;
+}
+
+void flight_run(const scenario_t *scenario, const flight_options_t *options, flight_result_t *result)
 {
     const char *reference = overridden(options, "SETR");
 
-    memset(&flight, 0, sizeof flight);
     memset(result, 0, sizeof *result);
     flight.telemetry = options->telemetry;
     metrics_begin(&flight.record, reference != NULL ? strtod(reference, NULL) : scenario->reference_m,
                   scenario->platform,
                   !options->realtime && options->duration_s > 0.0 ? options->duration_s : scenario->land_s);
     flight.record.field_day = scenario->field_day && !scenario->by_stick;
-    *error = open_devices(options);
-    if (*error != NULL) {
-        return false;
-    }
-    if (!lay_place(options->place != NULL ? options->place : scenario->place, options->seed)) {
-        *error = flight.place.message;
-        return false;
-    }
     configure(scenario, options);
     flight.by_hand = options->realtime && !scenario->bench;
     if (flight.by_hand) {
@@ -832,7 +834,6 @@ bool flight_run(const scenario_t *scenario, const flight_options_t *options, fli
     run(scenario, options, result);
     conclude(result);
     power_off(options);
-    return true;
 }
 
 /* Again

@@ -64,9 +64,12 @@ double flight_soonest_s(const scenario_t *scenario, const char *name, const char
 /* Checks and stores one NAME=VALUE. NULL when fine, else what is wrong with it. */
 const char *flight_override(flight_options_t *options, const char *assignment);
 
-/* False: the flight could not begin; *error says which device could not be opened, and why. */
-bool flight_run(const scenario_t *scenario, const flight_options_t *options, flight_result_t *result,
-                const char **error);
+/* Opens the devices and lays the place. NULL when the flight can begin, else what is wrong. Nothing is
+ * written yet: its files need not be open. */
+const char *flight_prepare(const scenario_t *scenario, const flight_options_t *options);
+
+/* After flight_prepare() of the same. */
+void flight_run(const scenario_t *scenario, const flight_options_t *options, flight_result_t *result);
 
 typedef struct {
     size_t rows;

@@ -122,7 +122,6 @@ static void fly(void *argument, void *result)
 {
     static flight_options_t options;
     const order_t *order = argument;
-    const char *error = NULL;
 
     options.seed = order->seed;
     options.duration_s = order->land_s;
@@ -131,9 +130,10 @@ static void fly(void *argument, void *result)
             _exit(4);
         }
     }
-    if (!flight_run(scenario_find(order->scenario), &options, result, &error)) {
+    if (flight_prepare(scenario_find(order->scenario), &options) != NULL) {
         _exit(5);
     }
+    flight_run(scenario_find(order->scenario), &options, result);
 }
 
 void child_fly_until(const char *scenario, unsigned long seed, const char *const *assignments, double land_s,

@@ -242,7 +242,6 @@ static void fly_logged(void *argument, void *result)
     static flight_options_t options;
     static flight_result_t flown;
     const order_t *order = argument;
-    const char *error;
 
     options = (flight_options_t){.seed = order->seed, .csv = tmpfile()};
     for (int i = 0; order->assignments[i] != NULL; i++) {
@@ -250,9 +249,10 @@ static void fly_logged(void *argument, void *result)
             _exit(4);
         }
     }
-    if (!flight_run(scenario_find(order->scenario), &options, &flown, &error)) {
+    if (flight_prepare(scenario_find(order->scenario), &options) != NULL) {
         _exit(5);
     }
+    flight_run(scenario_find(order->scenario), &options, &flown);
     rewind(options.csv);
     read_log(options.csv, result);
 }

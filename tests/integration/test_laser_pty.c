@@ -396,6 +396,25 @@ static void check_time_table(const char *table, long rx_octets, long tx_octets)
     TEST_ASSERT_TRUE(last_us > 1000000);
 }
 
+/* The scan that was on the line when the recording ended is in it too, and was not counted. At this rate the
+ * line hardly rests. */
+void test_a_recording_tells_as_many_scans_as_are_read_from_it(void)
+{
+    static char text[200000];
+    char told[40];
+
+    begin("--height", "0.4", "--rate", "57600");
+    TEST_ASSERT_EQUAL_INT(0, child_plomada("scip record '" LINK
+                                           "' slow.bin --force --seconds 1 --rate 57600 2>&1",
+                                           text, sizeof text));
+    const char *scans = strstr(text, "\nscans: ");
+    TEST_ASSERT_NOT_NULL_MESSAGE(scans, text);
+    snprintf(told, sizeof told, "%.*s\n", (int)strcspn(scans + 1, "\n"), scans + 1);
+    TEST_ASSERT_EQUAL_INT(0, child_plomada("scip decode slow.bin 2>&1 >slow.csv", text, sizeof text));
+    TEST_ASSERT_EQUAL_STRING_LEN(told, text, strlen(told));
+    TEST_ASSERT_EQUAL_INT(0, end_server(SIGTERM));
+}
+
 void test_a_recording_at_the_fastest_rate(void)
 {
     static char text[200000];

@@ -284,17 +284,16 @@ typedef struct {
 
 static void fly_by(flight_options_t *options, const order_t *order, flight_result_t *result)
 {
-    const char *error = NULL;
-
     options->seed = order->seed;
     for (int i = 0; order->lie->assignments[i] != NULL; i++) {
         if (flight_override(options, order->lie->assignments[i]) != NULL) {
             _exit(4);
         }
     }
-    if (!flight_run(scenario_find("est-60cm-ramp"), options, result, &error)) {
+    if (flight_prepare(scenario_find("est-60cm-ramp"), options) != NULL) {
         _exit(5);
     }
+    flight_run(scenario_find("est-60cm-ramp"), options, result);
 }
 
 /* Until the motors are off, at most 60 s after the order to land. */

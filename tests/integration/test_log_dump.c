@@ -347,13 +347,13 @@ static void fly_with_both_logs(void *scenario, void *result)
 {
     static flight_options_t options;
     static flight_result_t flown;
-    const char *error;
 
     options.seed = 3;
     options.csv = tmpfile();
-    if (options.csv == NULL || !flight_run(scenario_find(scenario), &options, &flown, &error)) {
+    if (options.csv == NULL || flight_prepare(scenario_find(scenario), &options) != NULL) {
         abort();
     }
+    flight_run(scenario_find(scenario), &options, &flown);
     read_csv(options.csv, result);
     read_ring(result);
 }

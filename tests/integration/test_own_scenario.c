@@ -194,6 +194,9 @@ void test_what_is_wrong_is_told_by_its_line(void)
     refused("reference 0.5\nend 9\n", "no land");
     refused("land 9\nend 12\n", "no reference");
     refused("reference 0.5\nland 9\nend 8\n", "end is not after land");
+    refused("reference 0.5\nat 18 LAND\nland 12\nend 18\n",
+            ":2: at 18 LAND: not before the end, 18 s: it would never be typed");
+    refused("like est-60cm-ramp\nat 5 SETR 0.4\nat 99 SETR 0.5\n", ":3: at 99 SETR: not before the end");
     TEST_ASSERT_EQUAL_INT(2, child_plomada("fly ./no-such-file 2>&1", output, sizeof output));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "./no-such-file: No such file"), output);
 }

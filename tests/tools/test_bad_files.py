@@ -68,6 +68,38 @@ class Files(unittest.TestCase):
         self.assertIn(self.plomada(*flight, "--csv", "left.csv").returncode, (0, 1))
         self.assertGreater((self.dir / "left/flight.plomada").stat().st_size, 1000)
 
+    def test_what_a_refused_command_was_to_replace_is_not_lost(self):
+        """Files were emptied first, and the command refused then: by its limits, a device, a line of the log or another file."""
+        (self.dir / "bad.limits").write_text("no limits")
+        (self.dir / "torn.csv").write_text((self.dir / "flown.csv").read_text() + "9 m\n")
+        (self.dir / "cut").write_bytes(re.sub(rb"first_row_ns \d+", b"first_row_ns 900000000000000000", (self.dir / "run/flight.plomada").read_bytes()))
+        (self.dir / "kept.md").mkdir(exist_ok=True)
+        sensor, end = os.openpty()
+        self.addCleanup(os.close, sensor)
+        self.addCleanup(os.close, end)
+        flight = ("fly", "./own.scenario", "--csv", "kept", "--trace", "kept.trace")
+        for words, reason in (((*flight, "--limits", "bad.limits"), "bad.limits: not the limits"), ((*flight, "--imu", "/nowhere"), "/nowhere"),
+                              (("replay", "torn.csv", "--csv", "kept"), "not as many cells"), (("replay", "cut", "--csv", "kept"), "ends before its first row"),
+                              (("board", "--laser", "l", "--imu", "i", "--xbee", "x", "--pulses", "kept", "--bits", "imu=/nowhere/i"), "/nowhere/i"),
+                              (("scip", "record", os.ttyname(end), "kept", "--force"), "kept.md: Is a directory")):
+            with self.subTest(words):
+                (self.dir / "kept").write_text("kept")
+                (self.dir / "kept.trace").write_text("kept")
+                self.refused(self.plomada(*words), reason)
+                self.assertEqual([(self.dir / name).read_text() for name in ("kept", "kept.trace")], ["kept", "kept"])
+                self.assertFalse((self.dir / "kept.tx").exists())
+
+    def test_a_folder_where_a_file_is_expected_is_named_as_one(self):
+        """It was read as an empty file: `no figure of the plant in it`, `no row of a #LOG dump in it`."""
+        (self.dir / "folder").mkdir(exist_ok=True)
+        flight = ("fly", "./own.scenario")
+        for words in ((*flight, "--vehicle"), (*flight, "--place"), (*flight, "--limits"), (*flight, "--storage"), (*flight, "--csv"), ("log",),
+                      ("replay", "run", "--csv"), ("scip", "decode")):
+            with self.subTest(words):
+                self.refused(self.plomada(*words, "folder"), "folder: Is a directory")
+        self.refused(self.plomada("fly", "./folder"), "./folder: Is a directory")
+        self.refused(self.plomada("replay", "folder"), "folder: a folder without a recording: no flight.plomada in it")
+
     def test_an_output_that_is_there_already_holds_the_new_flight_alone(self):
         (self.dir / "old.csv").write_bytes((self.dir / "flown.csv").read_bytes() + b"more" * 1000)
         self.assertIn(self.plomada("fly", "./own.scenario", "--csv", "old.csv").returncode, (0, 1))
@@ -201,6 +233,16 @@ class Files(unittest.TestCase):
                              (rows[0] + "\n", "no row of a flight")):
             with self.subTest(reason):
                 self.refused(self.replay(text.encode()), reason)
+
+    def test_a_dump_in_a_console_is_not_passed_over(self):
+        """The telemetry around it was replayed in its place: a height in 0.2 s, and level assumed."""
+        console = (self.dir / "console.log").read_bytes()
+        self.assertIn(b"\nalt:", console)
+        for text in (console, console[console.index(b"OK LOG 0 "):]):
+            self.refused(self.replay(text), "OK LOG: a dump of #LOG; type `plomada log` with this file, and replay the CSV that it makes")
+        self.assertEqual(self.replay(b"\n".join(line for line in console.splitlines() if not re.match(rb"OK LOG [1-9]", line)) + b"\n").returncode, 0)
+        self.assertEqual(self.plomada("log", "console.log", "--force").returncode, 0)
+        self.assertEqual(self.plomada("replay", "console.csv", "--csv", os.devnull).returncode, 0)
 
     def test_a_log_from_another_system_is_the_same_log(self):
         self.assertEqual(self.replay((self.dir / "flown.csv").read_bytes()).returncode, 0)

@@ -27,6 +27,7 @@ sys.path.insert(0, str(CAMPAIGN.parent))
 import bound  # noqa: E402
 import campaign  # noqa: E402
 import fleet  # noqa: E402
+import musts  # noqa: E402
 import page  # noqa: E402
 import plan  # noqa: E402
 import situations  # noqa: E402
@@ -216,7 +217,13 @@ class Keeping(Case):
         self.campaign(*self.LESS, "--runs", "3")
         with self.program.open("a", encoding="utf-8") as file:
             file.write("# a line more\n")
-        self.assertEqual(self.campaign(*self.LESS, "--runs", "3")[3], 6)
+        told = "the program is another one than that of 6 kept flights: they are flown again\n"
+        shutil.copytree(self.out, self.dir / "kept")
+        _, out, _, flown = self.campaign(*self.LESS, "--runs", "4")
+        self.assertEqual((out.count(told), flown), (1, 8), out)
+        _, out, _, flown = self.campaign(*self.LESS, "--runs", "5")     # by the same program: no word
+        self.assertEqual((out.count("another one"), flown), (0, 2), out)
+        self.assertTrue(self.typed("--resume", "--out", str(self.dir / "kept"))[1].startswith(told))
 
     def test_a_broken_flight_is_named_and_the_others_are_kept(self):
         self.tell("broken", 25)
@@ -252,10 +259,21 @@ class Keeping(Case):
         for name, body in (("silent", "exit 0"), ("prose", 'for p; do :; done; echo fine > "$p"')):
             self.program.write_text(f"#!/bin/sh\n{body}\n", encoding="utf-8")
             self.assertEqual(self.campaign(*self.LESS, "--runs", "1")[0], 2, name)
+            self.assertFalse(self.out.exists(), name)
         self.program.unlink()
         status, _, err, _ = self.campaign(*self.LESS, "--runs", "1")
         self.assertEqual(status, 2)
         self.assertIn(str(self.program), err)
+
+    def test_a_campaign_that_cannot_begin_leaves_no_folder(self):
+        """An empty one stayed, and --resume without --out went on with it."""
+        for words in (("--lies", "1", "--only", "lice"), ("--law", "EST", "--vehicle", str(self.dir / "none.json")), ("--law", "EST", "--program", "/none"),
+                      ("--healthy", "1", "--program", str(self.dir))):
+            self.assertEqual(self.typed("--program", str(self.program), "--out", str(self.out), *words)[::3], (2, 0), words)
+            self.assertFalse(self.out.exists(), words)
+        with contextlib.redirect_stderr(io.StringIO()):
+            self.assertEqual(musts.main(["--only", "edges", "--program", "/none", "--out", str(self.out)]), 2)
+        self.assertFalse(self.out.exists())
 
     def test_control_c_keeps_what_was_flown(self):
         self.tell("slow")
@@ -360,6 +378,22 @@ class Keeping(Case):
         with contextlib.redirect_stderr(io.StringIO()) as err, self.assertRaises(SystemExit):
             campaign.main(self.argv("--plan", str(file)))
         self.assertIn("is there already", err.getvalue())
+
+    def test_a_drawn_set_says_what_it_does_not_take_from_the_file_of_a_vehicle(self):
+        file = self.dir / "vehicle.json"
+        file.write_text('{"plant.hover_thrust": {"value": 9}, "plant.tau": {"value": 0.2}, "plant.sag_power": {"value": 1}}')
+        _, out, _, flown = self.campaign("--vehicle", str(file), "--law", "EST", "--set", "nominal,untrimmed,glitches", "--runs", "1")
+        self.assertEqual((flown, [line for line in out.splitlines() if str(file) in line and line.startswith("set ")]),
+                         (3, [f"set untrimmed is not around {file}: it has figures of its own for hover_thrust, tau"]))
+
+    def test_a_law_of_a_plan_that_the_program_has_too_is_refused(self):
+        """It was flown in place of the program's, whose name its figures then had."""
+        file = self.dir / "own.json"
+        file.write_text(json.dumps({"laws": {"GLIDE": {"settings": {"LAW": "EST"}}}}))
+        with contextlib.redirect_stderr(io.StringIO()) as err, self.assertRaises(SystemExit) as end:
+            campaign.main(self.argv("--plan", str(file), "--law", "GLIDE"))
+        self.assertEqual((end.exception.code, self.flown()), (2, 0))
+        self.assertIn(f"--plan {file}: law GLIDE is one of the program's own; give it another name", err.getvalue())
 
     def test_a_law_that_only_the_program_has_is_flown_by_its_name(self):
         status, out, _, flown = self.campaign("--law", "GLIDE,PID", "--set", "nominal", "--runs", "2")
@@ -481,11 +515,25 @@ class Saying(Case):
         self.assertRegex(out.getvalue(), r"^1 of 10 flights, \d+ s remain *\n$")
 
     def test_usage_errors_have_status_2(self):
-        for words in (("--law", "PIDX"), ("--set", "windy"), ("--runs", "0"), ("--seed", "x"),
-                      ("--page", "--runs", "9"), ("--page", "--law", "EST")):
+        for words in (("--law", "PIDX"), ("--set", "windy"), ("--runs", "0"), ("--seed", "x")):
             with self.assertRaises(SystemExit) as end, contextlib.redirect_stderr(io.StringIO()):
                 campaign.main(self.argv(*words))
             self.assertEqual(end.exception.code, 2, words)
+
+    def test_a_page_is_written_by_a_whole_run_alone(self):
+        """A vehicle, a plan, or a law of the program's own beside the others went into docs/control.md as if it were the campaign of the page."""
+        own = self.dir / "own.json"
+        own.write_text('{"laws": {"SLOWER": {"settings": {"POSK": 2}}}}', encoding="utf-8")
+        for words in (("--runs", "9"), ("--law", "EST"), ("--law", f"{','.join(plan.LAWS)},GLIDE"), ("--set", "nominal"), ("--set", "KP=1"), ("--seed", "2"),
+                      ("--plan", str(own)), ("--vehicle", str(own)), ("--fly", "calm/1/EST"), ("--healthy", "--held-out"), ("--battery", "--held-out")):
+            with self.subTest(words=words), mock.patch.dict(plan.LAWS):
+                with self.assertRaises(SystemExit) as end, contextlib.redirect_stderr(io.StringIO()) as err:
+                    campaign.read_arguments(self.argv("--page", *words))
+                self.assertEqual(end.exception.code, 2)
+                self.assertIn("--page writes what a whole run found", err.getvalue())
+        for words in ((), ("--healthy", "3"), ("--lies",), ("--lies", "2", "--held-out"), ("--battery",)):
+            with self.subTest(words=words):
+                self.assertTrue(campaign.whole(campaign.read_arguments(self.argv("--page", *words))))
 
 
 def campaign_of(est=None, other=None):
@@ -577,11 +625,6 @@ class Page(unittest.TestCase):
         for match in list(re.finditer(r"\d+\.\d+", self.shown))[::7]:
             other = self.shown[:match.start()] + "7777" + self.shown[match.end():]
             self.assertNotEqual(page.compare(other, self.text), [], match.group())
-
-    def test_only_the_whole_default_campaign_is_compared(self):
-        self.assertTrue(page.complete(campaign_of(), 1))
-        self.assertFalse(page.complete(campaign_of(), 2))
-        self.assertFalse(page.complete(campaign_of()[1:], 1))
 
     def test_the_bound_is_that_of_the_page(self):
         line = re.search(r"^\| bound \|.*$", self.shown, re.MULTILINE).group()

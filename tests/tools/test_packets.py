@@ -38,6 +38,15 @@ class Packets(unittest.TestCase):
             self.assertIn(reason, told.getvalue())
             self.assertEqual(told.getvalue().count("\n"), 1)
 
+    def test_a_line_that_the_firmware_would_refuse_gets_no_sum(self):
+        self.assertIn(f"#define TELECOMMAND_LINE_MAX \\\n    {packets.LINE_MAX}U ", (ROOT / "drivers/telecommand.h").read_text(encoding="utf-8"))
+        with contextlib.redirect_stdout(io.StringIO()) as said, contextlib.redirect_stderr(io.StringIO()) as told:
+            self.assertEqual([packets.main(["--sum", "#STOP " + "x" * length]) for length in (21, 22)], [0, 2])
+        self.assertEqual(len(said.getvalue().splitlines()), 1)
+        self.assertEqual(len(said.getvalue()), packets.LINE_MAX + 1)
+        self.assertIn("33 characters with its sum; the firmware takes no line of more than 32", told.getvalue())
+        self.assertTrue(all(len(packets.with_sum(command)) <= packets.LINE_MAX for command in packets.COMMANDS))
+
     def test_names_are_unique_and_say_what_is_sent(self):
         found = list(ElementTree.fromstring(packets.document()).iter("packet"))
         names = [packet.get("name") for packet in found]

@@ -72,9 +72,11 @@ class Case(unittest.TestCase):
             self.assertTrue(is_picture(self.dir / (name + ".png")))
 
     def test_nothing_to_draw_is_said_and_no_picture_made(self):
-        (self.dir / "empty.bin").write_bytes(b"VV\n00P\n\n")
-        status, said, complained = self.run_scan(self.dir / "empty.bin")
-        self.assertEqual((status, said), (1, ""))
+        for octets in (b"", b"a shopping list\n", b"VV\n00P\n\n"):
+            (self.dir / "empty.bin").write_bytes(octets)
+            status, said, complained = self.run_scan(self.dir / "empty.bin")
+            self.assertEqual((status, said), (2, ""))
+            self.assertTrue(complained.startswith(f"scan: {self.dir}/empty.bin: no scan in it; it is to be a recording of `plomada scip record`"), complained)
         self.assertIn("VV           1", complained)
         self.assertEqual(self.run_scan(self.dir / "nowhere")[0], 2)
         self.assertEqual(list(self.dir.glob("*.png")), [])

@@ -24,11 +24,15 @@ class Names(unittest.TestCase):
         self.file.parent.mkdir()
         self.file.touch()
 
+    def make(self, *typed):
+        """Neither make nor setup is run again."""
+        return subprocess.run(["make", "-C", ROOT, *typed, "MAKE=true", "setup=true", f"python={self.tool}"], check=False, capture_output=True, text=True,
+                              env=os.environ | {"PATH": f"{self.dir}:{os.environ['PATH']}"})
+
     def words(self, *typed):
-        """Those of all tools that it ran. Neither make nor setup is run again."""
+        """Those of all tools that it ran."""
         self.noted.unlink(missing_ok=True)
-        subprocess.run(["make", "-C", ROOT, *typed, "MAKE=true", "setup=true", f"python={self.tool}"], check=False, capture_output=True,
-                       env=os.environ | {"PATH": f"{self.dir}:{os.environ['PATH']}"})
+        self.make(*typed)
         return self.noted.read_text(encoding="utf-8").splitlines()
 
     def test_a_name_with_blanks_is_one_word(self):
@@ -38,9 +42,31 @@ class Names(unittest.TestCase):
         self.assertIn("a b/v.json", self.words("tune", "VEHICLE=a b/v.json"))
         self.assertIn(f"-DPLOMADA_LAW={self.file}", self.words("mine", f"FILE={self.file}"))
 
+    def test_a_law_in_a_file_whose_name_has_blanks_is_built(self):
+        """By what `make mine` gives to CMake, in another tree and without its optimizer."""
+        shutil.copy(ROOT / "examples/my_law/law_mine.c", self.file)
+        words = self.words("mine", f"FILE={self.file}")
+        words = [word.replace("build-mine", str(self.dir / "tree")) for word in words[:words.index("--build")]]
+        subprocess.run(["cmake", *words, "-DCMAKE_BUILD_TYPE=Debug"], cwd=ROOT, check=True, capture_output=True)
+        subprocess.run(["cmake", "--build", self.dir / "tree", "--target", "control"], check=True, capture_output=True)
+        self.assertIn(b"law_mine_step", (self.dir / "tree/libcontrol.a").read_bytes())
+        self.assertEqual(len(list((self.dir / "tree").rglob("my_file.c.o")) + list((self.dir / "tree").rglob("my file.c.o"))), 1)
+
     def test_several_logs_are_several_words(self):
+        logs = [str(self.dir / name) for name in ("x.csv", "y.csv")]
+        for log in logs:
+            Path(log).touch()
         for goal in ("plot", "fit"):
-            self.assertIn(["x.csv", "y.csv"], [words[at:at + 2] for words in [self.words(goal, "LOG=x.csv y.csv")] for at in range(len(words))], goal)
+            self.assertIn(logs, [words[at:at + 2] for words in [self.words(goal, f"LOG={' '.join(logs)}")] for at in range(len(words))], goal)
+
+    def test_a_name_with_blanks_among_several_is_refused_and_one_that_a_pattern_finds_is_not(self):
+        other = self.dir / "x.csv"
+        other.touch()
+        for goal in ("plot", "scan", "fit", "verdict"):
+            done = self.make(goal, f"LOG={other} {self.file}")
+            self.assertEqual((done.returncode, self.noted.exists()), (2, False), goal)
+            self.assertIn(f"make {goal}: LOG: no file {self.dir}/a. Where LOG names several files, none of them may have a blank in its name", done.stderr)
+        self.assertIn(str(self.file), self.words("plot", f"LOG={other} {self.dir}/a?b/*.c"))
 
 
 class Setup(unittest.TestCase):

@@ -319,6 +319,13 @@ class Saying(unittest.TestCase):
         self.assertEqual(named("--seed", "3"), ["missed-3.txt"])
         self.assertEqual(named("--only", "edges", "--share", "0.02"), ["missed-1-only-edges-share-0.02.txt"])
 
+    def test_a_part_of_the_musts_does_not_go_into_the_page(self):
+        for words in (("--only", "edges"), ("--share", "0.1"), ("--fly", "a-long-slope/47/EST")):
+            with self.assertRaises(SystemExit) as end, contextlib.redirect_stderr(io.StringIO()) as err, mock.patch.object(survey, "write") as written:
+                musts.main([*words, "--page", "--out", str(self.dir), "--program", PROGRAM])
+            self.assertEqual((end.exception.code, written.call_count), (2, 0), words)
+            self.assertIn("--page writes what a whole run found: leave --only, --share and --fly", err.getvalue())
+
     def test_the_page_has_the_blocks_that_the_command_writes(self):
         copy = self.dir / "page.md"
         shutil.copy(survey.PAGE, copy)
@@ -348,6 +355,10 @@ class Saying(unittest.TestCase):
         status, again, err = self.campaign(*words)
         self.assertEqual((status, again), (0, out))
         self.assertIn(f"0 flights flown, {len(stored)} known", err)
+        kept = (self.dir / "out/lies.jsonl").read_text().splitlines(keepends=True)[:3]
+        by_another = [line.replace(fleet.digest(PROGRAM)[:12], "0" * 12).replace('"key": "', '"key": "0') for line in kept]
+        (self.dir / "out/lies.jsonl").write_text("".join(by_another))
+        self.assertIn("the program is another one than that of 3 kept flights: they are flown again\n", self.campaign(*words)[1])
         for record in stored[:4]:
             with contextlib.redirect_stdout(io.StringIO()) as told:
                 again = shlex.split(shlex.split(record["command"])[2].removeprefix("ARGS="))

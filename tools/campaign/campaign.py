@@ -15,6 +15,7 @@ those parts of the ranges that nothing may be tuned on.
 docs/campaign.md tells more. Exit status: 0; 1 a law does not reach what it must, or the page says otherwise; 2 usage or a program that does not fly; 130 interrupted.
 """
 import argparse
+import contextlib
 import hashlib
 import json
 import os
@@ -94,6 +95,13 @@ def surveyed(arguments):
     return next(((name, getattr(arguments, name)) for name in survey.RUNS if getattr(arguments, name)), None)
 
 
+def whole(arguments):
+    """Whether this is a run that a page shows: nothing that was typed leaves flights out, adds some, or changes them."""
+    other = (arguments.law_words, arguments.set_words, arguments.plan, arguments.vehicle, arguments.runs, arguments.only, arguments.fly)
+    elsewhere = arguments.held_out and (arguments.healthy or arguments.battery)     # the page has lies alone of that part
+    return arguments.seed == 1 and not any(other) and not elsewhere
+
+
 def names(known):
     def read(text):
         wanted = list(known) if text == "all" else text.split(",")
@@ -166,7 +174,7 @@ def choose(parser, arguments):
     """Laws, sets and assignments; what --plan adds, and the program's own laws that are named, are known from here on."""
     if arguments.plan:
         try:
-            plan.extend(json.loads(arguments.plan.read_text(encoding="utf-8")))
+            plan.extend(json.loads(arguments.plan.read_text(encoding="utf-8")), plan.of_program(arguments.program))
         except (OSError, ValueError, TypeError, KeyError) as error:
             parser.error(f"--plan {arguments.plan}: {error}")
     if not set(words_of_laws(arguments)) <= {*plan.LAWS, "all"}:
@@ -215,12 +223,9 @@ def read_arguments(argv):
         arguments = resumed(parser, arguments, words)
     arguments.out = arguments.out or folder_of(words)
     choose(parser, arguments)
-    if surveyed(arguments) and arguments.page and (set(arguments.laws), arguments.seed, arguments.only) != (set(plan.LAWS), 1, []):
-        parser.error("--page goes with all situations, the default laws and seed")
-    of_control = (set(arguments.laws), set(arguments.sets), arguments.runs, arguments.seed)
-    if not surveyed(arguments) and arguments.page and of_control != (
-            set(plan.LAWS), set(plan.DEFAULT_SETS), None, 1):
-        parser.error("--page goes with the default laws, sets, runs and seed")
+    if arguments.page and not whole(arguments):
+        parser.error("--page writes what a whole run found: it goes alone, or with --healthy, --lies, --lies --held-out or --battery. Leave the other "
+                     "options, or leave --page")
     return arguments
 
 
@@ -228,6 +233,13 @@ def with_own(words, typed, vehicle):
     """The same flight with the vehicle of a file, and with own assignments, which win."""
     own = [word for name, value in typed.items() for word in ("--set", f"{name}={value}")]
     return [words[0], *(["--vehicle", str(vehicle.resolve())] if vehicle else []), *words[1:], *own]
+
+
+def redrawn(sets, vehicle):
+    """{set: the figures of the vehicle's file that it draws anew}, of those that do."""
+    known = set(re.findall(r'"plant\.(\w+)"', vehicle.read_text(encoding="utf-8")))
+    found = {name: sorted(known & set(plan.plant(name, 1, 1))) for name in sets}
+    return {name: figures for name, figures in found.items() if figures}
 
 
 def flights(program, laws, sets, seed, runs, typed=None, vehicle=None):
@@ -248,6 +260,7 @@ def fly_missing(program, planned, store, scheduler=None):
     missing = [(key, words) for key, (_, words) in planned.items() if key not in store.known]
     if not missing:
         return 0
+    store.tell_of_another(program, {key: label for key, (label, _) in planned.items()})
     progress, provenance = fleet.Progress(len(missing)), fleet.provenance(program)
     with fleet.fleet(scheduler) as client:
         for key, figures in fleet.fly_all(client, program, missing):
@@ -309,7 +322,7 @@ def run_survey(arguments):
     """The exit status."""
     name, runs = surveyed(arguments)
     return survey.run(name, arguments.laws, arguments.seed, runs, arguments.held_out, arguments.only, str(arguments.program.resolve()),
-                      arguments.out, arguments.scheduler, arguments.page)
+                      arguments.out, whole(arguments), arguments.scheduler, arguments.page)
 
 
 def fly_one(arguments):
@@ -321,6 +334,8 @@ def fly_one(arguments):
 def run(arguments):
     """The exit status."""
     program = str(arguments.program.resolve())
+    for name, figures in redrawn(arguments.sets, arguments.vehicle).items() if arguments.vehicle else ():
+        print(f"set {name} is not around {arguments.vehicle}: it has figures of its own for {', '.join(figures)}")
     laws = {name: plan.LAWS[name] for name in arguments.laws}
     planned = flights(program, laws, arguments.sets, arguments.seed, arguments.runs, arguments.typed, arguments.vehicle)
     with fleet.Store(arguments.out / "flights.jsonl") as store:
@@ -333,7 +348,7 @@ def run(arguments):
     print(verdict.text(found), end="\n\n")
     print(worst(program, planned, store.known), end="\n\n")
     write(arguments, groups, rows)
-    otherwise = compare_page(rows, arguments.page) if page.complete(rows, arguments.seed) else []
+    otherwise = compare_page(rows, arguments.page) if whole(arguments) else []
     if otherwise:
         print("docs/control.md is otherwise; --page writes it:", *otherwise, sep="\n")
     return 1 if otherwise or any(one.missed for one in found) else 0
@@ -352,9 +367,17 @@ def remember(arguments, argv):
                                "--out DIR")
         for name in changed_of(files):
             print(f"{name} was changed: what it changes is flown anew", file=sys.stderr)
-    arguments.out.mkdir(parents=True, exist_ok=True)
     files = {os.path.abspath(name): fleet.digest(name) for name in (arguments.plan, arguments.vehicle) if name}
+    arguments.out.mkdir(parents=True, exist_ok=True)
     fleet.write_whole(path, json.dumps({"words": words, "files": files}))
+
+
+def forget(out):
+    """Of a campaign that could not fly: without a flight that is kept there is nothing to go on with."""
+    if not any(out.glob("*.jsonl")):
+        (out / BEGUN).unlink(missing_ok=True)
+        with contextlib.suppress(OSError):      # of other campaigns, or not there
+            out.rmdir()
 
 
 def main(argv=None):
@@ -363,7 +386,12 @@ def main(argv=None):
         if arguments.fly:
             return fly_one(arguments)
         remember(arguments, argv)
-        return run_survey(arguments) if surveyed(arguments) else run(arguments)
+        try:
+            return run_survey(arguments) if surveyed(arguments) else run(arguments)
+        except Exception:
+            if not arguments.resume:
+                forget(arguments.out)
+            raise
     except (fleet.Broken, situations.Wrong, OSError) as error:
         print(f"campaign: {error}", file=sys.stderr)
         return 2

@@ -148,11 +148,13 @@ class Store:
     def __init__(self, path):
         self.path = Path(path)
         self.known = {}
+        self.labels = []            # of each flight that was kept before
         if self.path.exists():
             for line in self.path.read_text(encoding="utf-8").splitlines():
                 with contextlib.suppress(ValueError, KeyError, TypeError):
                     record = json.loads(line)
-                    self.known[record["key"]] = record["figures"]
+                    self.known[record["key"]] = record.pop("figures")
+                    self.labels.append(record)
 
     def __enter__(self):
         self.path.parent.mkdir(parents=True, exist_ok=True)
@@ -162,8 +164,22 @@ class Store:
             self.file.write("\n")
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, failed, *_):
+        """What failed before anything was kept leaves nothing."""
         self.file.close()
+        if failed and self.path.stat().st_size == 0:
+            self.path.unlink()
+            with contextlib.suppress(OSError):      # there is more in it
+                self.path.parent.rmdir()
+
+    def tell_of_another(self, program, wanted):
+        """Says so when some of the flights {key: label} are kept, but by another program."""
+        own = digest(program)[:12]
+        missing = {json.dumps(label) for key, label in wanted.items() if key not in self.known}
+        names = next(iter(wanted.values()), {})
+        theirs = {json.dumps({name: record.get(name) for name in names}) for record in self.labels if record.get("program", own) != own}
+        if missing & theirs:
+            print(f"the program is another one than that of {len(missing & theirs)} kept flights: they are flown again", flush=True)
 
     def add(self, flight_key, label, figures):
         """label: what a reader wants to know of the flight (law, set, run)."""

@@ -11,7 +11,7 @@ what it must not, or when its figure is beyond the bound. The rate of these is t
   OPEN     so many flights do not tell
 
 --share 0.1 flies a tenth of the flights. Each flight is kept in build/campaign/musts, by program and draw: a rerun flies what is missing there.
---page writes the table of docs/reliability.md. Exit status: 0; 1 a must is MISSED; 2 usage or a program that does not fly.
+--page, of all musts and flights, writes the table of docs/reliability.md. Exit status: 0; 1 a must is MISSED; 2 usage or a program that does not fly.
 """
 import argparse
 import hashlib
@@ -94,6 +94,10 @@ class Planned:
         return f"{self.situation.slug}/{self.number}/{self.law}"
 
     @property
+    def label(self):
+        return {"flight": self.name, "seed": self.seed}
+
+    @property
     def command(self):
         return f"build/venv/bin/python tools/campaign/musts.py --seed {self.seed} --fly {self.name}"
 
@@ -158,10 +162,11 @@ def fly(program, flights, store):
     keys = {flight.name: flight.key(digest) for flight in flights}
     missing = {keys[flight.name]: flight for flight in flights if keys[flight.name] not in store.known}
     if missing:
-        progress = fleet.Progress(len(missing))
+        store.tell_of_another(program, {keys[flight.name]: flight.label for flight in flights})
+        progress, provenance = fleet.Progress(len(missing)), fleet.provenance(program)
         with fleet.fleet() as client:
             for key, figures in fleet.fly_all(client, program, [(key, flight.flight.words, flight.flight.text) for key, flight in missing.items()]):
-                store.add(key, {"flight": missing[key].name, "seed": missing[key].seed, "command": missing[key].command}, figures)
+                store.add(key, missing[key].label | provenance | {"command": missing[key].command}, figures)
                 progress.step()
     return [(flight, store.known[keys[flight.name]]) for flight in flights]
 
@@ -275,6 +280,8 @@ def main(argv=None):
     parser.add_argument("--program", type=Path, default=fleet.ROOT / "build/plomada")
     parser.add_argument("--out", type=Path, default=fleet.ROOT / "build/campaign/musts", metavar="DIR")
     arguments = parser.parse_args(argv)
+    if arguments.page and (arguments.only or arguments.share != 1.0 or arguments.fly):
+        parser.error("--page writes what a whole run found: leave --only, --share and --fly, or leave --page")
     program = str(arguments.program.resolve())
     try:
         if "EST-FRONT" not in plan.LAWS:

@@ -63,13 +63,6 @@ def demanded(found):
             "their aim" + (", these do not:\n\n" + markdown(verdict.HEAD, below) if below else ".\n"))
 
 
-def complete(rows, seed):
-    """Whether these rows are those of the default campaign."""
-    flown = {(row["set"], row["law"]): row["flights"] for row in rows}
-    return seed == 1 and all(flown.get((name, law)) == plan.SETS[name].runs
-                             for name in plan.DEFAULT_SETS for law in plan.LAWS)
-
-
 def flights_of(name):
     return f"{plan.SETS[name].runs} flights per law"
 

@@ -67,10 +67,12 @@ SETS = {
 DEFAULT_SETS = [name for name in SETS if name not in ("trimmed", "rotors") and not name.startswith("stock")]
 
 
-def extend(own):
+def extend(own, of_program=()):
     """Adds laws and sets of a file: {"laws": {NAME: {"settings": {}, "scenario": ""}}, "sets": {NAME: {"summary": "",
-    "runs": 20, "figures": [], "fixed": {}, "lands": false}}}. A name that is known already is refused."""
+    "runs": 20, "figures": [], "fixed": {}, "lands": false}}}. A name that is known already, here or to the program, is refused."""
     for name, law in own.get("laws", {}).items():
+        if name in of_program:
+            raise ValueError(f"law {name} is one of the program's own; give it another name")
         if name in LAWS:
             raise ValueError(f"law {name} is there already")
         LAWS[name] = Law({key: str(value) for key, value in law.get("settings", {}).items()}, law.get("scenario", SCENARIO))
@@ -84,14 +86,19 @@ def extend(own):
                          dict(words.get("fixed", {})), bool(words.get("lands", False)))
 
 
-def take_from(program):
-    """Adds the laws that the program has (control/laws/table.h) and LAWS does not. A program that does not tell has none more."""
+def of_program(program):
+    """The names of the laws that the program has (control/laws/table.h). One that does not tell has none: what is wrong with it, the first flight tells."""
     try:
         told = subprocess.run([program, "params", "LAW"], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False).stdout
     except OSError:
-        return      # what is wrong with the program, the first flight tells
+        return []
     choices = re.search(r"^one of: (.*)$", told, re.MULTILINE)
-    for name in choices.group(1).split("|") if choices else ():
+    return choices.group(1).split("|") if choices else []
+
+
+def take_from(program):
+    """Adds the laws that the program has and LAWS does not."""
+    for name in of_program(program):
         LAWS.setdefault(name, Law({"LAW": name}))
 
 

@@ -41,6 +41,11 @@ class Planned:
         return "/".join([self.situation.slug, str(self.number), self.law, *[HELD_OUT] * self.held_out])
 
     @property
+    def label(self):
+        """What names it among the flights that are kept."""
+        return {"flight": self.name, "seed": self.seed}
+
+    @property
     def command(self):
         """What flies it again, and says what it did."""
         seed = f"--seed {self.seed} " if self.seed != 1 else ""
@@ -125,7 +130,7 @@ def fly_missing(program, flights, store, scheduler=None):
         with fleet.fleet(scheduler) as client:
             for key, figures in fleet.fly_all(client, program, missing):
                 flight = keys[key]
-                store.add(key, {"flight": flight.name, "seed": flight.seed} | provenance | {"command": flight.command}, figures)
+                store.add(key, flight.label | provenance | {"command": flight.command}, figures)
                 progress.step()
     return {flight.name: store.known[key] for key, flight in keys.items()}, len(missing)
 
@@ -293,11 +298,12 @@ def write(block, rendered):
     print(PAGE, file=sys.stderr)
 
 
-def run(name, laws, seed, runs, held_out, only, program, out, scheduler=None, page=False):
-    """Flies it and says so. The exit status."""
+def run(name, laws, seed, runs, held_out, only, program, out, whole, scheduler=None, page=False):
+    """Flies it and says so. whole: it is compared with the page. The exit status."""
     flights = planned(situations.load(name), laws, seed, runs, held_out, only)
-    before_s = of_children_s()
+    before_s, digest = of_children_s(), fleet.digest(program)
     with fleet.Store(out / f"{block_of(name, held_out)}.jsonl") as store:
+        store.tell_of_another(program, {flight.key(digest): flight.label for flight in flights})
         figures, new = fly_missing(program, flights, store, scheduler)
     cost = f"; {(of_children_s() - before_s) / new:.2f} s of processor each" if new and not scheduler else ""
     print(f"{new} flights flown, {len(flights) - new} known{cost}", file=sys.stderr)
@@ -306,7 +312,7 @@ def run(name, laws, seed, runs, held_out, only, program, out, scheduler=None, pa
     fleet.write_whole(listed, "".join(f"{line}\n" for line in failing(flown)))
     with contextlib.suppress(BrokenPipeError):
         print(f"{text(name, flown)}\n\nwhat went wrong, and the command of each: {listed}")
-    if set(laws) != set(plan.LAWS) or seed != 1 or only:
+    if not whole:
         return 0
     rendered = render(name, flown, runs, held_out)
     if page:

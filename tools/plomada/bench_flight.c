@@ -464,13 +464,13 @@ static bool simulate(const scenario_t *scenario, unsigned long seed, double dela
     static flight_options_t options;
     static flight_result_t result;
     char setting[32];
-    const char *error;
 
     options = (flight_options_t){.seed = seed};
     snprintf(setting, sizeof setting, "plant.tdelay=%.4f", delay_s);
-    if (flight_override(&options, setting) != NULL || !flight_run(scenario, &options, &result, &error)) {
+    if (flight_override(&options, setting) != NULL || flight_prepare(scenario, &options) != NULL) {
         return false;
     }
+    flight_run(scenario, &options, &result);
     *metrics = result.metrics;
     return result.started;
 }

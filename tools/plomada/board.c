@@ -378,7 +378,17 @@ static void pulse(sim_time_t high_ns)
 }
 
 /* Read as well: a FIFO opens without waiting for its reader. */
-static bool open_recording(const char *path, const char *unit, const char *first, int *file)
+static bool open_recording(const char *path, int *file)
+{
+    if (path == NULL) {
+        return true;
+    }
+    *file = open(path, O_RDWR | O_CREAT | O_NONBLOCK | O_CLOEXEC, 0644);
+    return *file >= 0 || complain(strerror(errno), path);
+}
+
+/* All of them are open: what was in one is gone from here on. */
+static bool begin_recording(const char *path, const char *unit, const char *first, int file)
 {
     char head[160];
     const int length = snprintf(
@@ -390,16 +400,26 @@ static bool open_recording(const char *path, const char *unit, const char *first
     if (path == NULL) {
         return true;
     }
-    *file = open(path, O_RDWR | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0644);
-    return (*file >= 0 && write(*file, head, (size_t)length) > 0) || complain(strerror(errno), path);
+    (void)!ftruncate(file, 0); /* a FIFO has no length */
+    return write(file, head, (size_t)length) > 0 || complain(strerror(errno), path);
 }
 
 static bool open_recordings(void)
 {
-    bool fine = open_recording(order.lines.pulses, "microseconds", "0", &bench.pulses);
+    bool fine = open_recording(order.lines.pulses, &bench.pulses);
 
     for (int i = 0; i < BOARD_WIRES; i++) {
-        fine = fine && open_recording(order.lines.bits[i], "nanoseconds", "1", &bench.bits[i]);
+        fine = fine && open_recording(order.lines.bits[i], &bench.bits[i]);
+    }
+    return fine;
+}
+
+static bool begin_recordings(void)
+{
+    bool fine = begin_recording(order.lines.pulses, "microseconds", "0", bench.pulses);
+
+    for (int i = 0; i < BOARD_WIRES; i++) {
+        fine = fine && begin_recording(order.lines.bits[i], "nanoseconds", "1", bench.bits[i]);
     }
     return fine;
 }
@@ -564,7 +584,7 @@ int command_board(int argc, char **argv)
     noise_init(&bench.noise, order.seed, "nonsense");
     pace_begin();
     (void)signal(SIGUSR1, on_power_cycle);
-    begun = files_apart() && load_storage() && open_recordings() && open_wires();
+    begun = files_apart() && load_storage() && open_recordings() && open_wires() && begin_recordings();
     if (begun) {
         printf("board: %s %s %s\n", order.lines.path[BOARD_LASER], order.lines.path[BOARD_IMU],
                order.lines.path[BOARD_RADIO]);

@@ -582,9 +582,8 @@ static output_t *const *outputs_of(request_t *request)
 }
 
 /* A flight that is refused leaves no file that it has made. */
-static int refuse(request_t *request)
+static int refuse(const request_t *request)
 {
-    output_undo(outputs_of(request), OUTPUTS);
     if (request->record_made) {
         rmdir(request->record_dir);
     }
@@ -626,24 +625,29 @@ static bool load_place(request_t *request)
     return request->place_path == NULL || request->flight.place != NULL;
 }
 
+static bool prepare(const request_t *request)
+{
+    const char *error = flight_prepare(request->scenario, &request->flight);
+
+    if (error != NULL) {
+        fprintf(stderr, "plomada fly: %s\n", error);
+    }
+    return error == NULL;
+}
+
+/* The outputs are opened last: what they are to replace is not lost by a flight that is refused. */
 static int run(request_t *request)
 {
     static flight_result_t result;
-    const char *error;
     bool met, kept;
 
     name_record(request);
-    if (!files_apart(request) || !load_place(request) || !load_storage(request) || !open_outputs(request)) {
+    if (!files_apart(request) || !load_place(request) || !measure_read_limits(request->limits_path) ||
+        !load_storage(request) || !prepare(request) || !open_outputs(request)) {
         return refuse(request);
     }
-    request->flight.costs = measure_begin(request->cost_scale, request->trace.file, request->limits_path);
-    if (request->flight.costs == NULL) {
-        return refuse(request);
-    }
-    if (!flight_run(request->scenario, &request->flight, &result, &error)) {
-        fprintf(stderr, "plomada fly: %s\n", error);
-        return refuse(request);
-    }
+    request->flight.costs = measure_begin(request->cost_scale, request->trace.file);
+    flight_run(request->scenario, &request->flight, &result);
     kept = keep_storage(request->storage_path);
     measure_end();
     met = request->scenario->bench ? bench_ended(&result)

@@ -13,6 +13,7 @@
 
 #include "commands.h"
 #include "drivers/line_sum.h"
+#include "input.h"
 #include "output.h"
 #include "saved.h"
 
@@ -407,7 +408,7 @@ static int worse(int one, int other)
 /* 2: there is nothing to write. */
 static int read_source(source_t *source)
 {
-    FILE *in = fopen(source->file, "r");
+    FILE *in = input_open(source->file);
     const size_t before = planned_count;
 
     if (in == NULL) {

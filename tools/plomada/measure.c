@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "input.h"
 #include "sim/costs.h"
 #include "sim/timing/instruments.h"
 
@@ -16,9 +17,9 @@ static struct {
     int limit_count;
 } measure;
 
-static bool read_limits(const char *path)
+bool measure_read_limits(const char *path)
 {
-    FILE *in = path == NULL ? NULL : fopen(path, "r");
+    FILE *in = path == NULL ? NULL : input_open(path);
 
     measure.limit_count = 0;
     if (in != NULL) {
@@ -33,11 +34,8 @@ static bool read_limits(const char *path)
     return true;
 }
 
-const kernel_costs_t *measure_begin(double cost_scale, FILE *trace, const char *limits_path)
+const kernel_costs_t *measure_begin(double cost_scale, FILE *trace)
 {
-    if (!read_limits(limits_path)) {
-        return NULL;
-    }
     instruments_connect(measure.limits, measure.limit_count, trace);
     return costs_stretch(&measure.costs, &costs_annex_iv, cost_scale);
 }

@@ -7,10 +7,13 @@
 
 #include "sim/ti/sysbios/kernel.h"
 
-/* Before the flight, which is to run with the costs returned: Annex IV's, cost_scale times. trace: NULL, or
- * where the schedule goes. limits_path: NULL, or a file that tools/rta/limits.py wrote for these costs. NULL
- * when that cannot be read; the reason is on stderr. */
-const kernel_costs_t *measure_begin(double cost_scale, FILE *trace, const char *limits_path);
+/* path: NULL, or a file that tools/rta/limits.py wrote for the costs of the flight. False when it cannot be
+ * read; the reason is on stderr. */
+bool measure_read_limits(const char *path);
+
+/* After measure_read_limits(), before the flight, which is to run with the costs returned: Annex IV's,
+ * cost_scale times. trace: NULL, or where the schedule goes. */
+const kernel_costs_t *measure_begin(double cost_scale, FILE *trace);
 
 /* After the flight. The trace is complete. */
 void measure_end(void);

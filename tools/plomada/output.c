@@ -54,23 +54,8 @@ static bool make_empty(output_t *output)
     return !is_file || ftruncate(fileno(output->file), 0) == 0 || complain(output);
 }
 
-bool output_open_all(output_t *const outputs[], size_t count)
-{
-    bool opened = true;
-
-    for (size_t i = 0; i < count && opened; i++) {
-        opened = open_whole(outputs[i]);
-    }
-    for (size_t i = 0; i < count && opened; i++) {
-        opened = make_empty(outputs[i]);
-    }
-    if (!opened) {
-        output_undo(outputs, count);
-    }
-    return opened;
-}
-
-void output_undo(output_t *const outputs[], size_t count)
+/* Closes them. Those that were made are removed. */
+static void undo(output_t *const outputs[], size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         if (outputs[i]->file != NULL && !output_is_stdout(outputs[i])) {
@@ -82,6 +67,22 @@ void output_undo(output_t *const outputs[], size_t count)
             outputs[i]->made = false;
         }
     }
+}
+
+bool output_open_all(output_t *const outputs[], size_t count)
+{
+    bool opened = true;
+
+    for (size_t i = 0; i < count && opened; i++) {
+        opened = open_whole(outputs[i]);
+    }
+    for (size_t i = 0; i < count && opened; i++) {
+        opened = make_empty(outputs[i]);
+    }
+    if (!opened) {
+        undo(outputs, count);
+    }
+    return opened;
 }
 
 bool output_close(output_t *output)

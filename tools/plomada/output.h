@@ -18,9 +18,6 @@ bool output_open(output_t *output);
 /* All of them, or none: when one does not open, the others are as they were. */
 bool output_open_all(output_t *const outputs[], size_t count);
 
-/* Closes them. Those that output_open_all() has made are removed. */
-void output_undo(output_t *const outputs[], size_t count);
-
 /* Flushes and closes. False when any octet did not reach the file (a full disk, a closed pipe); the reason is
  * on stderr. */
 bool output_close(output_t *output);

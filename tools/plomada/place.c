@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "input.h"
 #include "sim/scenarios/place_file.h"
 
 #define TEXT_N 65536 /* 200 blocks, and as much in remarks */
@@ -13,7 +14,7 @@ const char *place_read(const char *path)
 {
     static place_file_t file;
     static char text[TEXT_N];
-    FILE *in = fopen(path, "r");
+    FILE *in = input_open(path);
 
     if (in == NULL) {
         fprintf(stderr, "plomada fly: %s: %s\n", path, strerror(errno));

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "input.h"
+
 /* "; Samplerate: 1 MHz" */
 static void read_rate(pulse_reader_t *reader, const char *line)
 {
@@ -109,7 +111,7 @@ static const char *read_lines(FILE *file, pulses_t *pulses)
 
 const char *pulses_read(const char *path, pulses_t *pulses)
 {
-    FILE *file = fopen(path, "r");
+    FILE *file = input_open(path);
     const char *error;
 
     pulses->count = 0;

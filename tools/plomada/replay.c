@@ -3,6 +3,7 @@
 #include <getopt.h>
 #include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
@@ -29,7 +30,7 @@ static const char usage[] =
     "this one moved\n"
     "the vehicle. thrust_n is what it would command next, flown_n what was; `make plot` draws both. What is "
     "not there is\n"
-    "named on stderr.\n\n"
+    "named on stderr. A dump of #LOG is refused: `plomada log` makes a CSV of it.\n\n"
     "  --csv FILE          the log (default: stdout). Never the RECORDING itself\n"
     "  --set NAME=VALUE    a telecommand parameter in place of what was typed for it. The vehicle does not "
     "answer to what\n"
@@ -122,7 +123,7 @@ static const char *file_of(const char *given)
     return path;
 }
 
-static tape_t *load(const char *path)
+static tape_t *load(const char *given, const char *path)
 {
     const char *error = NULL;
     tape_t *tape;
@@ -130,7 +131,10 @@ static tape_t *load(const char *path)
 
     in = fopen(path, "r");
     if (in == NULL) {
-        complain(strerror(errno), path);
+        const bool in_folder = errno == ENOENT && strcmp(given, path) != 0;
+
+        complain(in_folder ? "a folder without a recording: no " RECORDING_NAME " in it" : strerror(errno),
+                 given);
         return NULL;
     }
     tape = tape_read(in, &error);
@@ -197,19 +201,46 @@ static FILE *open_log(const char *path)
     return in;
 }
 
+/* The log in memory: a replay that is refused writes nothing, and leaves the file of --csv as it was. */
+typedef struct {
+    FILE *file;
+    char *text;
+    size_t length;
+} kept_t;
+
+static kept_t *keep(void)
+{
+    static kept_t kept;
+
+    kept.file = open_memstream(&kept.text, &kept.length);
+    if (kept.file == NULL) {
+        abort();
+    }
+    return &kept;
+}
+
+static bool write_kept(request_t *request, kept_t *kept)
+{
+    fclose(kept->file);
+    if (!output_open(&request->csv)) {
+        return false;
+    }
+    fwrite(kept->text, 1, kept->length, request->csv.file);
+    free(kept->text);
+    return output_close(&request->csv);
+}
+
 static int run_log(request_t *request, FILE *in)
 {
-    const char *error;
+    kept_t *kept = keep();
+    const char *error = replay_log(in, &request->sets, kept->file);
 
-    if (!output_open(&request->csv)) {
-        return 2;
-    }
-    error = replay_log(in, &request->sets, request->csv.file);
     fclose(in);
     if (error != NULL) {
         complain(error, request->path);
+        return 2;
     }
-    return output_close(&request->csv) && error == NULL ? 0 : 2;
+    return write_kept(request, kept) ? 0 : 2;
 }
 
 static int run(request_t *request)
@@ -227,12 +258,14 @@ static int run(request_t *request)
     if (log != NULL) {
         return run_log(request, log);
     }
-    tape_t *tape = load(uses[0].path);
+    tape_t *tape = load(request->path, uses[0].path);
 
-    if (tape == NULL || !retype(request, tape) || !output_open(&request->csv)) {
+    if (tape == NULL || !retype(request, tape)) {
         return 2;
     }
-    error = flight_replay(tape, request->sets.override_count > 0, request->csv.file,
+    kept_t *kept = keep();
+
+    error = flight_replay(tape, request->sets.override_count > 0, kept->file,
                           request->telemetry ? stderr : NULL, &result);
     if (error != NULL) {
         complain(error, request->path);
@@ -242,7 +275,7 @@ static int run(request_t *request)
     const bool to_its_end = result.halt == NULL && tape_state(tape) != TAPE_CUT;
 
     tape_free(tape);
-    return !output_close(&request->csv) ? 2 : to_its_end ? 0 : 1;
+    return !write_kept(request, kept) ? 2 : to_its_end ? 0 : 1;
 }
 
 int command_replay(int argc, char **argv)

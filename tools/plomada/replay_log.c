@@ -55,6 +55,12 @@ static struct {
     char message[120];
 } replay;
 
+/* A row of a dump of #LOG; row 0 has its titles. */
+static bool is_record(const char *line)
+{
+    return strncmp(line, "OK LOG ", 7) == 0 && strtol(line + 7, NULL, 10) > 0;
+}
+
 bool replay_log_reads(FILE *in)
 {
     char line[LINE_MAX_OCTETS];
@@ -63,7 +69,7 @@ bool replay_log_reads(FILE *in)
     for (int i = 0; i < 1000 && !found && fgets(line, sizeof line, in) != NULL; i++) {
         const char *text = line + (i == 0 && strncmp(line, BYTE_ORDER_MARK, 3) == 0 ? 3 : 0);
 
-        found = strncmp(text, "t_s,", 4) == 0 || strncmp(text, "alt:", 4) == 0;
+        found = strncmp(text, "t_s,", 4) == 0 || strncmp(text, "alt:", 4) == 0 || is_record(text);
     }
     rewind(in);
     return found;
@@ -378,6 +384,10 @@ static void tell(void)
 static const char *read_line(char *line, row_t *row, bool *is_row)
 {
     *is_row = false;
+    if (is_record(line)) {
+        return wrong("a dump of #LOG; type `plomada log` with this file, and replay the CSV that it makes",
+                     "OK LOG");
+    }
     if (strncmp(line, "t_s,", 4) == 0) {
         read_titles(line);
         replay.telemetry = false;

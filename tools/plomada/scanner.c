@@ -268,16 +268,6 @@ bool scanner_ask(scip_kind_t kind, char *text, size_t size)
     return answered && scanner.parser.reply.status[0] == '0' && scanner.parser.reply.status[1] == '0';
 }
 
-unsigned long scanner_scans(void)
-{
-    return report().seen.scan_count;
-}
-
-unsigned long scanner_damaged(void)
-{
-    return report().seen.damage_count;
-}
-
 unsigned long scanner_rate(void)
 {
     return scanner.rate;

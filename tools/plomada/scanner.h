@@ -37,8 +37,6 @@ bool scanner_stop(void);
  * reply. */
 bool scanner_ask(scip_kind_t kind, char *text, size_t size);
 
-unsigned long scanner_scans(void);
-unsigned long scanner_damaged(void);
 unsigned long scanner_rate(void); /* that the latest scan has come at, as the port's driver says; 0: none */
 double scanner_scans_per_s(
     void); /* of the latest stream without a gap, by the sensor's clock; 0: not known */

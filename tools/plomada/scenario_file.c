@@ -8,6 +8,7 @@
 #include <strings.h>
 
 #include "control/parameters.h"
+#include "input.h"
 #include "nearest.h"
 #include "sim/scenarios/flight.h"
 #include "sim/scenarios/plant.h"
@@ -21,8 +22,10 @@
 
 static struct {
     scenario_t scenario;
-    int settings, plant, later; /* how many */
-    int count;                  /* of the words of this line */
+    int settings, plant, later;       /* how many */
+    int line;                         /* that is read; of the whole file: 0 */
+    int typed_on[SCENARIO_LATER_MAX]; /* the line of each at; 0: of the scenario that it is like */
+    int count;                        /* of the words of this line */
     char *word[WORDS_MAX];
     char place[PLACE_N];
     char message[240];
@@ -197,7 +200,7 @@ static const char *read_at(void)
     if (error == NULL) {
         line->name = kept(reading.word[2]);
         line->value = kept(value);
-        reading.later++;
+        reading.typed_on[reading.later++] = reading.line;
     }
     return error;
 }
@@ -345,18 +348,35 @@ static const char *read_line(char *text, bool last)
     return reading.count == 0 ? NULL : read_words();
 }
 
+/* A command that would never be typed. Those of the scenario that it is like may be: who ends earlier cannot
+ * take them away. */
+static const char *behind_the_end(const scenario_t *s)
+{
+    for (int i = 0; i < reading.later; i++) {
+        if (reading.typed_on[i] > 0 && s->later[i].t_s >= s->end_s) {
+            reading.line = reading.typed_on[i];
+            snprintf(reading.message, sizeof reading.message,
+                     "at %g %s: not before the end, %g s: it would never be typed", s->later[i].t_s,
+                     s->later[i].name, s->end_s);
+            return reading.message;
+        }
+    }
+    return NULL;
+}
+
 /* What only the whole file shows. */
 static const char *check(void)
 {
     const scenario_t *s = &reading.scenario;
 
+    reading.line = 0;
     if (!s->bench && s->reference_m <= 0.0) {
         return "no reference";
     }
     if (!s->bench && s->land_s <= METRICS_REFERENCE_S) {
         return "no land";
     }
-    return s->end_s > s->land_s ? NULL : "end is not after land";
+    return s->end_s > s->land_s ? behind_the_end(s) : "end is not after land";
 }
 
 static const char *name_of(const char *path)
@@ -373,32 +393,30 @@ bool scenario_file_named(const char *name)
 
 const scenario_t *scenario_file_read(const char *command, const char *path)
 {
-    FILE *in = fopen(path, "r");
+    FILE *in = input_open(path);
     char text[LINE_MAX_OCTETS];
     const char *error = in == NULL ? strerror(errno) : NULL;
-    int number = 0;
 
     memset(&reading, 0, sizeof reading);
     reading.scenario.summary = "";
     reading.scenario.fate = FATE_EITHER;
     while (error == NULL && fgets(text, sizeof text, in) != NULL) {
-        const size_t mark = number++ == 0 && strncmp(text, BYTE_ORDER_MARK, 3) == 0 ? 3 : 0;
+        const size_t mark = reading.line++ == 0 && strncmp(text, BYTE_ORDER_MARK, 3) == 0 ? 3 : 0;
 
         error = read_line(text + mark, feof(in) != 0);
     }
     if (in != NULL && error == NULL && ferror(in) != 0) {
-        error = strerror(errno); /* a directory */
-        number = 0;
+        error = strerror(errno);
+        reading.line = 0;
     }
     if (reading.scenario.name == NULL) {
         reading.scenario.name = kept(name_of(path));
     }
     if (in != NULL && fclose(in) == 0 && error == NULL) {
-        number = 0; /* of the whole file */
         error = check();
     }
-    if (error != NULL && number > 0) {
-        fprintf(stderr, "plomada %s: %s:%d: %s\n", command, path, number, error);
+    if (error != NULL && reading.line > 0) {
+        fprintf(stderr, "plomada %s: %s:%d: %s\n", command, path, reading.line, error);
     } else if (error != NULL) {
         fprintf(stderr, "plomada %s: %s: %s\n", command, path, error);
     }

@@ -428,15 +428,21 @@ static const char *sensor_name(const scip_reader_t *reader)
     return info->product[0] != '\0' ? info->product : "not told in this recording";
 }
 
-void scip_reader_print(const scip_reader_t *reader, FILE *out)
+unsigned long scip_reader_damaged(const scip_reader_t *reader)
 {
-    const scip_reader_totals_t *totals = &reader->totals;
     unsigned long damaged = 0;
 
     for (int i = SCIP_DAMAGE_NONE + 1; i < SCIP_DAMAGE_COUNT; i++) {
         damaged += reader->parser.counters.damaged[i];
     }
-    fprintf(out, "scans: %lu\ndamaged: %lu", totals->scans, damaged);
+    return damaged;
+}
+
+void scip_reader_print(const scip_reader_t *reader, FILE *out)
+{
+    const scip_reader_totals_t *totals = &reader->totals;
+
+    fprintf(out, "scans: %lu\ndamaged: %lu", totals->scans, scip_reader_damaged(reader));
     for (int i = SCIP_DAMAGE_NONE + 1; i < SCIP_DAMAGE_COUNT; i++) {
         fprintf(out, " %s:%lu", damage_names[i], (unsigned long)reader->parser.counters.damaged[i]);
     }

@@ -65,6 +65,9 @@ void scip_reader_end(scip_reader_t *reader);
 /* Feeds the whole file, raw or a log of flexiport; "-" is stdin. NULL when fine, else what failed. */
 const char *scip_reader_file(scip_reader_t *reader, const char *path);
 
+/* Replies and scans, of every cause. */
+unsigned long scip_reader_damaged(const scip_reader_t *reader);
+
 /* Scans, damage by cause, which sensor, what was skipped and why; a few lines. */
 void scip_reader_print(const scip_reader_t *reader, FILE *out);
 

@@ -7,13 +7,16 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "output.h"
 #include "scanner.h"
 #include "scip.h"
+#include "scip_reader.h"
 #include "drivers/scip_layout.h"
 
 #define START_PATIENCE_S 30.0
 #define TEXT_MAX 1024
 #define BURST_US 2000
+#define FILES 4
 #define FLUSH_US 1000000 /* what the end of this program or of the disk may cost */
 
 static const char usage[] =
@@ -66,7 +69,8 @@ typedef struct {
     burst_t burst;
     long long flushed_us;
     unsigned long flushed_scans;
-    bool failed; /* a file cannot be written */
+    bool failed;          /* a file cannot be written */
+    scip_reader_t reader; /* of what is recorded: it counts what `scip decode` will find */
     char version[TEXT_MAX], parameters[TEXT_MAX];
 } recording_t;
 
@@ -158,45 +162,30 @@ static bool read_arguments(recording_t *recording, int argc, char **argv)
 
 /* ---- files ---- */
 
-static void path_of(const recording_t *recording, const char *suffix, char *path, size_t size)
-{
-    snprintf(path, size, "%s%s", recording->path, suffix);
-}
-
-static FILE *open_file(const recording_t *recording, const char *suffix)
-{
-    char path[4096];
-    FILE *file;
-
-    path_of(recording, suffix, path, sizeof path);
-    file = fopen(path, recording->force ? "wb" : "wbx");
-    if (file == NULL) {
-        complain(errno == EEXIST ? "is there already; --force overwrites it" : strerror(errno), path);
-    }
-    return file;
-}
-
-/* Nothing is created when one of the files is there. */
-static bool may_create(const recording_t *recording)
-{
-    static const char *const suffixes[] = {"", ".tx", ".csv", ".md"};
-    char path[4096];
-
-    for (size_t i = 0; i < sizeof suffixes / sizeof suffixes[0] && !recording->force; i++) {
-        path_of(recording, suffixes[i], path, sizeof path);
-        if (access(path, F_OK) == 0) {
-            return complain("is there already; --force overwrites it", path);
-        }
-    }
-    return true;
-}
-
+/* All of them, or none. */
 static bool open_files(recording_t *recording)
 {
-    return may_create(recording) && (recording->rx = open_file(recording, "")) != NULL &&
-           (recording->tx = open_file(recording, ".tx")) != NULL &&
-           (recording->csv = open_file(recording, ".csv")) != NULL &&
-           (recording->certificate = open_file(recording, ".md")) != NULL;
+    static const char *const suffixes[FILES] = {"", ".tx", ".csv", ".md"};
+    static char path[FILES][4096];
+    static output_t output[FILES];
+    output_t *outputs[FILES];
+
+    for (size_t i = 0; i < FILES; i++) {
+        snprintf(path[i], sizeof path[i], "%s%s", recording->path, suffixes[i]);
+        if (!recording->force && access(path[i], F_OK) == 0) {
+            return complain("is there already; --force overwrites it", path[i]);
+        }
+        output[i].path = path[i];
+        outputs[i] = &output[i];
+    }
+    if (!output_open_all(outputs, FILES)) {
+        return false;
+    }
+    recording->rx = output[0].file;
+    recording->tx = output[1].file;
+    recording->csv = output[2].file;
+    recording->certificate = output[3].file;
+    return true;
 }
 
 static bool close_file(FILE *file)
@@ -245,7 +234,8 @@ static void write_head(const recording_t *recording, FILE *out)
     fprintf(out, "| rate of the stream | %lu bit/s, %.2f scans per second of the sensor's clock |\n",
             scanner_rate(), scanner_scans_per_s());
     fprintf(out, "| octets | %lu from the sensor, %lu to it |\n", recording->rx_octets, recording->tx_octets);
-    fprintf(out, "| scans | %lu good, %lu replies or scans damaged |\n", scanner_scans(), scanner_damaged());
+    fprintf(out, "| scans | %lu good, %lu replies or scans damaged |\n", recording->reader.totals.scans,
+            scip_reader_damaged(&recording->reader));
 }
 
 /* Over what was written before. `whole`: the recording came to its end. */
@@ -271,12 +261,12 @@ static void write_certificate(const recording_t *recording, bool whole)
 
 static void show_progress(recording_t *recording, long long t_us)
 {
-    const unsigned long scans = scanner_scans();
+    const unsigned long scans = recording->reader.totals.scans;
     const double lasted_s = (double)(t_us - recording->flushed_us) * 1e-6;
 
     fprintf(stderr, "%s%6.1f s: %.1f scans/s, %lu scans, %lu damaged%s", isatty(STDERR_FILENO) ? "\r" : "",
             (double)t_us * 1e-6, (double)(scans - recording->flushed_scans) / lasted_s, scans,
-            scanner_damaged(), isatty(STDERR_FILENO) ? "" : "\n");
+            scip_reader_damaged(&recording->reader), isatty(STDERR_FILENO) ? "" : "\n");
     recording->flushed_scans = scans;
 }
 
@@ -290,6 +280,12 @@ static void bring_up_to_date(recording_t *recording)
         return;
     }
     write_certificate(recording, false);
+}
+
+static void count_alone(void *context, const scip_scan_t *scan)
+{
+    (void)context;
+    (void)scan;
 }
 
 static void keep(void *context, bool from_sensor, long long t_us, const unsigned char *octets, size_t count)
@@ -306,6 +302,9 @@ static void keep(void *context, bool from_sensor, long long t_us, const unsigned
         *burst = (burst_t){from_sensor, t_us, *total, 0};
     }
     fwrite(octets, 1, count, from_sensor ? recording->rx : recording->tx);
+    if (from_sensor) {
+        scip_reader_feed(&recording->reader, octets, count);
+    }
     burst->length += count;
     *total += count;
     if (t_us - recording->flushed_us >= FLUSH_US) {
@@ -341,7 +340,7 @@ static bool record(recording_t *recording)
         run_to_the_end(recording);
     }
     whole = !scanner_is_gone() && !recording->failed;
-    if (whole && scanner_scans() > 0 && scanner_stop()) {
+    if (whole && recording->reader.totals.scans > 0 && scanner_stop()) {
         scanner_ask(SCIP_VERSION, recording->version, sizeof recording->version);
         scanner_ask(SCIP_PARAMETERS, recording->parameters, sizeof recording->parameters);
     }
@@ -357,7 +356,7 @@ static bool record(recording_t *recording)
 static void tell(const recording_t *recording)
 {
     fprintf(stderr, "%sscans: %lu\ndamaged: %lu\noctets: %lu\n", isatty(STDERR_FILENO) ? "\n" : "",
-            scanner_scans(), scanner_damaged(), recording->rx_octets);
+            recording->reader.totals.scans, scip_reader_damaged(&recording->reader), recording->rx_octets);
 }
 
 static int run(recording_t *recording)
@@ -365,6 +364,7 @@ static int run(recording_t *recording)
     const char *error;
     bool whole, written;
 
+    scip_reader_init(&recording->reader, count_alone, NULL);
     recording->scanner.tap = keep;
     recording->scanner.context = recording;
     error = scanner_open(&recording->scanner);
@@ -373,7 +373,6 @@ static int run(recording_t *recording)
         return 2;
     }
     if (!open_files(recording)) {
-        (void)close_files(recording);
         scanner_close();
         return 2;
     }
@@ -386,7 +385,7 @@ static int run(recording_t *recording)
         complain("not written whole", recording->path);
         return 2;
     }
-    return whole && scanner_scans() > 0 ? 0 : 1;
+    return whole && recording->reader.totals.scans > 0 ? 0 : 1;
 }
 
 int scip_record(int argc, char **argv)

@@ -6,12 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "input.h"
+
 #define SIZE_MAX_OCTETS (1 << 20)
 
 /* Zero-terminated, to be freed; NULL with errno set. */
 static char *text_of(const char *path)
 {
-    FILE *in = fopen(path, "r");
+    FILE *in = input_open(path);
     char *text = in == NULL ? NULL : malloc(SIZE_MAX_OCTETS + 1);
     size_t length;
 

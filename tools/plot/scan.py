@@ -3,8 +3,8 @@
 
 FILE is a recording (`plomada scip record`, or a log of flexiport, .logr); DEVICE a scanner on a serial port, which is then
 recorded for --seconds first. One picture: the latest scan as the sensor sees the room, its front up, and behind it the
-median of all scans; and the distance in every direction over time. The path of the picture is printed. Exit 1 when there is
-no scan, 2 when FILE or DEVICE cannot be read.
+median of all scans; and the distance in every direction over time. The path of the picture is printed. Exit 2 when FILE or
+DEVICE cannot be read, or has no scan.
 """
 import argparse
 import io
@@ -29,11 +29,7 @@ COLUMNS_MAX = 2000      # of the image; a longer recording shows every n-th scan
 
 
 class NoScan(Exception):
-    """The exit status and what to say."""
-
-    def __init__(self, status, text):
-        super().__init__(text)
-        self.status = status
+    """What to say."""
 
 
 class Scans:
@@ -61,15 +57,17 @@ def record(program, device, seconds, directory):
     path = os.path.join(directory, "scan")
     done = subprocess.run([program, "scip", "record", device, path, "--seconds", str(seconds)], check=False)
     if done.returncode != 0:
-        raise NoScan(done.returncode, f"{device}: no recording")
+        raise NoScan(f"{device}: no recording")
     return path
 
 
 def decode(program, path):
     done = subprocess.run([program, "scip", "decode", path, "--long"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           text=True, check=False)
+    if done.returncode == 1:
+        raise NoScan(f"{path}: no scan in it; it is to be a recording of `plomada scip record`, or a log of flexiport (.logr)\n{done.stderr.strip()}")
     if done.returncode != 0:
-        raise NoScan(done.returncode, done.stderr.strip())
+        raise NoScan(done.stderr.strip())
     table = numpy.loadtxt(io.StringIO(done.stdout), delimiter=",", skiprows=1, ndmin=2, unpack=True)
     sensor = [line[8:] for line in done.stderr.splitlines() if line.startswith("sensor: ")]
     return Scans(table), sensor[0] if sensor else ""
@@ -139,7 +137,7 @@ def picture_path(output, source):
 def check_picture(path, source):
     """A picture is no other kind of file, and not the one that is read."""
     if path.suffix.lower() not in PICTURES:
-        raise NoScan(2, f"{path}: no name of a picture: it ends in {', '.join(PICTURES)}, or is a folder with its /")
+        raise NoScan(f"{path}: no name of a picture: it ends in {', '.join(PICTURES)}, or is a folder with its /")
     recording.apart([path], [source], "-o")
 
 
@@ -156,10 +154,7 @@ def main(arguments):
         scans, sensor = read(options.program, options.source, options.seconds)
         path.parent.mkdir(parents=True, exist_ok=True)
         draw(scans, f"{Path(options.source).name}: {len(scans.time_s)} scans   {sensor}", path)
-    except NoScan as error:
-        print(f"scan: {error}", file=sys.stderr)
-        return error.status
-    except recording.Unreadable as error:
+    except (NoScan, recording.Unreadable) as error:
         print(f"scan: {error}", file=sys.stderr)
         return 2
     except OSError as error:

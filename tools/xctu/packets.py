@@ -12,6 +12,7 @@ from xml.sax.saxutils import quoteattr
 
 FILE = Path(__file__).resolve().parents[2] / "docs" / "xctu_packets.xml"
 LINE_END = b"\n"
+LINE_MAX = 32   # TELECOMMAND_LINE_MAX of drivers/telecommand.h: the firmware refuses a longer line
 COMMANDS = (
     "#ARM", "#STOP", "#LAND",
     "#SETR 0.6", "#SETR 0.5", "#SETR 0",
@@ -71,7 +72,11 @@ def do(arguments):
         Path(arguments[1]).write_text(document([with_sum(command) for command in COMMANDS]), encoding="utf-8")
         return 0
     if arguments[:1] == ["--sum"] and len(arguments) == 2:
-        print(with_sum(arguments[1]))
+        line = with_sum(arguments[1])
+        if len(line) > LINE_MAX:
+            print(f"packets.py: {line!r}: {len(line)} characters with its sum; the firmware takes no line of more than {LINE_MAX}", file=sys.stderr)
+            return 2
+        print(line)
         return 0
     if arguments:
         print(__doc__, file=sys.stderr)
