@@ -397,6 +397,22 @@ class Tuning(unittest.TestCase):
                                                 stderr=subprocess.DEVNULL, stdout=subprocess.PIPE, check=False).stdout)
             self.assertEqual(figures, record["figures"])
 
+    def test_a_forecast_is_not_written_over_the_vehicle_and_numbers_of_nothing_are_refused(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            for name in ("vehicle.json", "forecast.flights.jsonl"):
+                path = Path(scratch, name)
+                path.write_text(json.dumps(FOUND))
+                out = Path(scratch, name.replace(".flights.jsonl", ".json"))
+                with contextlib.redirect_stderr(io.StringIO()) as err:
+                    self.assertEqual(tune_vehicle.main([str(path), "--out", str(out), "--program", PROGRAM]), 2)
+                self.assertIn(f"{path}: is read here; another --out", err.getvalue())
+                self.assertEqual(json.loads(path.read_text()), FOUND)
+            for option in ("--draws", "--budget", "--fresh", "--forecast"):
+                with self.assertRaises(SystemExit) as end, contextlib.redirect_stderr(io.StringIO()) as err:
+                    tune_vehicle.main([str(path), option, "0"])
+                self.assertEqual(end.exception.code, 2)
+                self.assertIn(f"argument {option}: at least 1", err.getvalue())
+
     def test_what_is_no_vehicle_or_no_forecast_is_refused_by_its_name(self):
         with tempfile.TemporaryDirectory() as scratch:
             path = Path(scratch, "given.json")
