@@ -235,6 +235,15 @@ class Fit(unittest.TestCase):
             self.assertNotIn("Broken", done.stderr)
         os.close(writes)
 
+    def test_a_flight_that_is_given_twice_is_refused(self):
+        log = self.fly(4720, {})
+        copied = self.dir / "copied.csv"
+        shutil.copy(log, copied)
+        for other in (log, copied):
+            done, vehicle = self.fit(log, other)
+            self.assertEqual((done.returncode, vehicle), (2, None))
+            self.assertIn(f"{other}: the same flight as in {log}; name each flight once", done.stderr)
+
     def test_a_fit_never_writes_over_a_log_that_it_reads(self):
         logs = [self.dir / "a.csv", self.dir / "b.png"]
         for log in logs:
