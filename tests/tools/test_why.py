@@ -143,6 +143,19 @@ class Short(OfTenSeconds):
                          + "".join(f"{0.025 * k:.3f},0.000,0.000,,0.000,0.000,0.0,0.0,GROUND,0,0.0,2000,0.07,,\n" for k in range(400)), encoding="utf-8")
         self.refused(bench, "no flight")
 
+    def test_without_its_packages_it_says_what_installs_them(self):
+        """After `make fly` build/venv has those of the pictures alone."""
+        for name in ("build/venv/bin", "tools/why"):
+            (self.dir / name).mkdir(parents=True)
+        program = shutil.copy(PROGRAM, self.dir / "build/plomada")
+        (self.dir / "build/venv/bin/python").symlink_to(sys.executable)
+        (self.dir / "tools/why/why.py").write_text("import no_such_package\n")
+        for word in ("--help", "flight.csv"):
+            done = subprocess.run([program, "why", word], check=False, capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn("its Python: is not installed; `make why LOG=FILE` installs it", done.stderr)
+            self.assertNotIn("Traceback", done.stderr)
+
     def test_a_picture_that_cannot_be_written_is_status_2(self):
         path = self.dir / "any.csv"
         path.touch()
