@@ -147,6 +147,15 @@ void test_the_place_of_the_page_is_flown_through(void)
     TEST_ASSERT_NULL_MESSAGE(strstr(output, "  recovery_s "), output);
 }
 
+void test_who_expects_nothing_has_met_nothing(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, fly(FLIGHT "name mine\n", ""));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "\nNothing was judged: mine expects nothing\n"), output);
+    TEST_ASSERT_NULL_MESSAGE(strstr(output, "MET"), output);
+    TEST_ASSERT_EQUAL_INT(2, fly(FLIGHT, "--duration 1"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "--duration: must be more than 1 s"), output);
+}
+
 void test_what_is_wrong_in_a_place_is_told_with_its_line(void)
 {
     refused(FLIGHT "place box 1 1\n", ":4: place: box: no such word");

@@ -327,7 +327,7 @@ static bool check_arguments(const request_t *request)
         return complain("goes with virtual time", "--until-down");
     }
     return options->realtime || options->duration_s == 0.0 || options->duration_s > METRICS_REFERENCE_S ||
-           complain("not more than 1 s", "--duration");
+           complain("must be more than 1 s, when the reference comes", "--duration");
 }
 
 static bool no_such_scenario(const char *name)
@@ -465,6 +465,7 @@ static bool print_verdict(FILE *out, const request_t *request, const flight_resu
                 flown.expectation_count < request->scenario->expectation_count
                     ? "MET: what could be judged of %s\n"
                 : flown.expectation_count > 0 ? "MET: all expectations of %s\n"
+                : flown.fate == FATE_EITHER   ? "Nothing was judged: %s expects nothing\n"
                                               : "MET: %s expects no figure\n",
                 request->scenario->name);
     }
