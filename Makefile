@@ -63,6 +63,7 @@ mine: ## Fly a law of your own, FILE=examples/my_law/law_mine.c, beside law EST:
 	@build/plomada fly est-60cm-ramp --csv build/est-60cm-ramp.csv --json build/est-60cm-ramp.json >/dev/null || [ $$? -eq 1 ]
 	@$(python) tools/plot/plot.py build/mine.csv build/est-60cm-ramp.csv -o build/mine.png
 	@$(python) tools/plot/moving.py build/mine.csv build/est-60cm-ramp.csv --title "Your law" --title "Law EST" -o build/mine.svg
+	@echo "your law: $(or $(FILE),examples/my_law/law_mine.c)"
 
 lab: ## Mark laboratory N=1 of the course (course/README.md): FILE=your answer, ID=your number
 	@test -n "$(N)" || { echo "usage: make lab N=1 [ID=12345] [FILE=answer]" >&2; exit 2; }
@@ -126,6 +127,7 @@ ground: build ground-vehicle ## The browser page, to be published or opened as i
 	@printf '%s\n' "$(CURDIR)/build-ground/index.html"
 
 ground-vehicle: ## The simulated vehicle as one WebAssembly module: build-ground/plomada.wasm, and vehicle.js for the page
+	@test -z "$(FILE)" || test -f "$(FILE)" || { echo "make ground: no file $(FILE)" >&2; exit 2; }
 	@$(setup) build plot ground
 	@tools/ground/vehicle.sh $(file) >/dev/null
 	@mkdir -p build-ground && cp build-wasm/plomada.wasm build-ground/

@@ -73,10 +73,12 @@ def spent(most_s, builds):
 
 
 def main():
-    if sys.argv[1] == "--spent":
+    if sys.argv[1:2] == ["--spent"]:
         print(spent(float(sys.argv[2]), sys.argv[3:]))
         return
-    build, *options = sys.argv[1:]
+    build, *options = sys.argv[1:] or [""]
+    if not (Path(build) / "CTestTestfile.cmake").is_file():
+        sys.exit(f"run.py: {build or 'no directory'}: no build directory with tests; run.py BUILD -R NAME runs one test of BUILD")
     report = Path(build).resolve() / "Testing" / "run.xml"
     report.parent.mkdir(exist_ok=True)
     report.unlink(missing_ok=True)

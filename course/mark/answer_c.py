@@ -19,7 +19,8 @@ class AnswerC:
         self.marker, self.folder, self.flights = marker, tempfile.TemporaryDirectory(), {}
         self.object = Path(self.folder.name) / "answer.so"
         compiler = os.environ.get("CC") or next(filter(shutil.which, ("cc", "gcc", "clang")), "cc")
-        done = subprocess.run([compiler, *FLAGS, "-o", self.object, path, "-lm"], capture_output=True, text=True, check=False)
+        done = subprocess.run([compiler, *FLAGS, "-o", self.object, path, "-lm"], capture_output=True, text=True, errors="replace",
+                              check=False)     # a line that it shows may have any octets
         self.built, self.complaints = done.returncode == 0, done.stderr
 
     def close(self):
@@ -29,7 +30,7 @@ class AnswerC:
         if not self.built:
             raise Refused("not asked, because it could not be built")
         try:
-            done = subprocess.run([self.marker, self.object, *words], input=text, capture_output=True, text=True, check=False, timeout=ENDLESS_S)
+            done = subprocess.run([self.marker, self.object, *words], input=text, capture_output=True, text=True, errors="replace", check=False, timeout=ENDLESS_S)
         except subprocess.TimeoutExpired:
             raise Refused("it does not end") from None
         if done.returncode == 3:

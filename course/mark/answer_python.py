@@ -36,7 +36,7 @@ class AnswerPython:
             results = Path(folder) / "results.json"
             try:
                 done = subprocess.run([sys.executable, "-B", "-I", RUNNER, self.path, results], input=question, capture_output=True,
-                                      text=True, check=False, timeout=ENDLESS_S)
+                                      text=True, errors="replace", check=False, timeout=ENDLESS_S)
             except subprocess.TimeoutExpired:
                 return "it does not end"
             self.complaints = done.stderr

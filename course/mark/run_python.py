@@ -30,13 +30,13 @@ def step(space, made, kind, name, arguments=()):
 
 
 def run(path, steps):
-    space, made, results = {"__name__": "answer"}, [], []
+    space, made, results, one = {"__name__": "answer"}, [], [], ("", "the file")
     try:
-        exec(compile(Path(path).read_text(encoding="utf-8"), str(path), "exec"), space)     # the answer is a program: see course/README.md
+        exec(compile(Path(path).read_bytes(), str(path), "exec"), space)    # octets: Python knows their code. A program: see course/README.md
         for one in steps:
             results.append(plain(step(space, made, *one)))
     except SyntaxError as error:
-        return f"Python does not understand line {error.lineno}"
+        return f"Python does not understand line {error.lineno}" if error.lineno else f"Python does not understand the file: {error.msg}"
     except Exception as error:  # an answer may fail in any way
         traceback.print_exc()
         lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)]

@@ -165,8 +165,28 @@ size_t port_write(port_t *port, const unsigned char *octets, size_t count)
     return taken;
 }
 
-/* A link that leads nowhere, or to a pseudo-terminal: left by a program that was killed. */
-static bool is_stale(const char *path)
+/* Whoever has a link holds this lock on the pseudo-terminal, and it ends with the program. It is not
+ * flock()'s, which users of a serial port take for themselves. */
+static bool lock(int fd, int command, struct flock *wanted)
+{
+    *wanted = (struct flock){.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_len = 1};
+    return fcntl(fd, command, wanted) == 0;
+}
+
+static bool is_in_use(const char *path)
+{
+    struct flock found;
+    const int fd = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    const bool locked = fd >= 0 && lock(fd, F_OFD_GETLK, &found) && found.l_type != F_UNLCK;
+
+    if (fd >= 0) {
+        close(fd);
+    }
+    return locked;
+}
+
+/* Whether the path is a link to a pseudo-terminal, or one that leads nowhere. */
+static bool is_of_port(const char *path)
 {
     char target[16] = "";
     struct stat status;
@@ -179,8 +199,16 @@ static bool is_stale(const char *path)
 
 const char *port_link(const port_t *port, const char *path)
 {
-    if (is_stale(path)) {
-        unlink(path);
+    struct flock own;
+
+    if (is_of_port(path)) {
+        if (is_in_use(path)) {
+            return "is in use by another program; end that one, or take another name";
+        }
+        unlink(path); /* left by a program that was killed */
+    }
+    if (!lock(port->slave, F_OFD_SETLK, &own)) {
+        return strerror(errno);
     }
     return symlink(port->name, path) == 0 ? NULL : strerror(errno);
 }

@@ -41,7 +41,8 @@ size_t port_resolve_marks(port_t *port, unsigned char *octets, size_t count);
 size_t port_write(port_t *port, const unsigned char *octets, size_t count);
 
 /* A pseudo-terminal of ours under a name of the user's choice, a symbolic link; one that an ended program has
- * left there is replaced. NULL when fine (then port_unlink()), else what failed. */
+ * left there is replaced, one that a program still has is not. NULL when fine (then port_unlink()), else what
+ * failed. */
 const char *port_link(const port_t *port, const char *path);
 /* Removes the link, unless another program has taken it over. */
 void port_unlink(const port_t *port, const char *path);

@@ -819,7 +819,7 @@ void flight_run(const scenario_t *scenario, const flight_options_t *options, fli
     memset(result, 0, sizeof *result);
     flight.telemetry = options->telemetry;
     metrics_begin(&flight.record, reference != NULL ? strtod(reference, NULL) : scenario->reference_m,
-                  scenario->platform,
+                  scenario->platform && options->place == NULL, /* else the platform is not there */
                   !options->realtime && options->duration_s > 0.0 ? options->duration_s : scenario->land_s);
     flight.record.field_day = scenario->field_day && !scenario->by_stick;
     configure(scenario, options);

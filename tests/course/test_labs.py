@@ -225,6 +225,29 @@ class Misfortunes(unittest.TestCase):
                 self.assertEqual(mark, 0, report)
                 self.assertIn(reason, report)
 
+    def test_an_answer_may_have_octets_that_are_no_utf_8(self):
+        plain = solution(1).read_text(encoding="utf-8")
+        for octets in (b"\xef\xbb\xbf" + plain.encode(), b"# -*- coding: latin-1 -*-\n# se\xf1al\n" + plain.encode("latin-1", errors="replace")):
+            path = self.folder / solution(1).name
+            path.write_bytes(octets)
+            self.assertEqual(marked(1, path)[1], 10)
+        for number, name, octets, reason in ((1, "a.py", b"x = '\xf1'\n", "Python does not understand line 1"), (1, "a.py", b"x = 1\0\n", "the file"),
+                                             (2, "a.c", b"int x = se\xf1al;\n", "could not be built")):
+            path = self.folder / name
+            path.write_bytes(octets)
+            report, mark = marked(number, path)
+            self.assertEqual(mark, 0, report)
+            self.assertIn(reason, report)
+
+    def test_the_loop_of_the_page_has_a_line_for_each_answer(self):
+        loop = re.search(r"^for file in answers/.*?^done$", (COURSE / "README.md").read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)[0]
+        (self.folder / "answers").mkdir()
+        for name in ("ana", "j!m"):
+            (self.folder / f"answers/{name}.c").write_text("int x;", encoding="ascii")
+        loop = loop.replace("course/mark/lab.py", f"'{COURSE}/mark/lab.py' --plomada '{PLOMADA}' --marker '{MARKER}'")
+        done = subprocess.run(["sh", "-c", loop], cwd=self.folder, capture_output=True, text=True, check=False)
+        self.assertEqual(done.stdout.splitlines(), ["ana: Mark: 0 of 10", "j!m: no mark, the reason stands above"], done.stderr)
+
     def test_an_answer_without_end_is_ended(self):
         for module, number, name, text in ((answer_python, 1, "a.py", "while True:\n    pass\n"),
                                            (answer_c, 3, "a.c", "float law_mine_step(void) { for (;;) { } }")):

@@ -84,7 +84,8 @@ class Short(unittest.TestCase):
             self.assertIn(rate, output)
         self.assertTrue(found["passed"] and found["date"].endswith("Z") and "F28377S" in found["chip"])
         self.assertEqual(set(found["adapters"]), {"laser", "imu", "xbee"})
-        self.assertIn("# Acceptance of a board: passed", markdown)
+        self.assertIn("# Acceptance of a board: passed: 7 of 16 items tried\n", markdown)
+        self.assertEqual((found["verdict"], found["tried"]), ("passed: 7 of 16 items tried", 7))
         self.assertIn("| Throttle pulse | pass | measured:", markdown)
 
     def names(self, item, result):
@@ -100,7 +101,7 @@ class Short(unittest.TestCase):
             self.assertIn("radio", first.stdout.readline())
             first.send_signal(signal.SIGINT)
             rest = first.communicate(timeout=60)[0]
-            if "ACCEPTED: " in rest and "NOT" not in rest:
+            if "\npassed: " in "\n" + rest:
                 bench.no_verdict()      # it was through before the signal came
             self.assertEqual(first.returncode, 1)
             second = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
@@ -108,6 +109,15 @@ class Short(unittest.TestCase):
             self.assertIn("going on with", second.stdout)
             self.assertNotIn("radio ", second.stdout.split("\n", 1)[1])
             self.assertFalse(os.path.exists(os.path.join(directory, "r.state")))
+
+    def test_a_board_of_which_items_were_skipped_is_not_accepted(self):
+        for items, tried in (("supplies,leds", 0), ("supplies,radio", 1)):
+            status, output, found, markdown = run(items=items)
+            words = f"incomplete: {tried} of 16 items tried"
+            self.assertEqual(status, 3, output)
+            self.assertIn(f"\n{words}; ", output)
+            self.assertEqual((found["passed"], found["verdict"], found["tried"]), (False, words, tried))
+            self.assertIn(f"# Acceptance of a board: {words}\n", markdown)
 
     def test_items_and_options_that_are_none_are_refused(self):
         for words in (["--items", "raido"], ["--flight", "5"], []):
@@ -121,7 +131,7 @@ class Long(unittest.TestCase):
         status, output, found, _ = run(flight_s=60)
         if any("keep up" in item["detail"] for item in found["items"]):
             bench.no_verdict()
-        self.assertEqual(status, 0, output)
+        self.assertEqual(status, 3, output)
         skipped = {item["item"] for item in found["items"] if item["verdict"] == "skipped"}
         self.assertLessEqual(skipped, {"supplies", "leds", "version"})
 

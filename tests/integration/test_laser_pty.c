@@ -319,6 +319,17 @@ void test_the_link_of_a_killed_server_is_replaced(void)
     answers("L0\n", "L0\n0\n\n");
 }
 
+void test_the_link_of_a_server_that_runs_is_left_to_it(void)
+{
+    char output[1000];
+
+    start(NULL, NULL, NULL, NULL, 115200);
+    TEST_ASSERT_EQUAL_INT(2, child_plomada("laser --link '" LINK "' 2>&1", output, sizeof output));
+    TEST_ASSERT_NOT_NULL(strstr(output, "is in use by another program"));
+    TEST_ASSERT_TRUE(is_link());
+    answers("L0\n", "L0\n0\n\n");
+}
+
 void test_a_link_that_leads_nowhere_is_replaced(void)
 {
     TEST_ASSERT_EQUAL_INT(0, symlink("/no/such/thing", LINK));

@@ -21,16 +21,16 @@ SETTINGS = {"FRONT": ("LAYOUT=FRONT",), "TWO": ("LAYOUT=TWO", "S1=263", "S2=505"
 SCENARIO, SEEDS = "est-60cm-ramp", range(1, 9)
 # The ground below every mirror rises at 7.3 s and falls at 11 s, at once. Over the ramp of the scenario's own course the
 # mirrors see it one after the other, and the mean of their spots is no height of any: that is not a matter of instants.
-PLACE = "foot 0 0 90 90 0.25 7.3 3.7\n"
+COURSE = f"like {SCENARIO}\nname layouts\nplace foot 0 0 90 90 0.25 7.3 3.7\n"
 BOUNDS = {"hover_rms_mm": 2.0, "terrain_rms_mm": 6.0, "overshoot_mm": 10.0, "undershoot_mm": 10.0, "recovery_s": 0.1}
 PROGRAMS = []
 
 
 def fly(program, layout, seed, scratch):
     csv, figures = scratch / "x.csv", scratch / "x.json"
-    place = scratch / "x.place"
-    place.write_text(PLACE, encoding="utf-8")
-    done = subprocess.run([program, SCENARIO, "--place", place, "--seed", str(seed), "--csv", csv, "--json", figures,
+    course = scratch / "x.scenario"
+    course.write_text(COURSE, encoding="utf-8")
+    done = subprocess.run([program, course, "--seed", str(seed), "--csv", csv, "--json", figures,
                            *(word for setting in SETTINGS[layout] for word in ("--set", setting))],
                           capture_output=True, text=True, check=False, timeout=120)
     if done.returncode not in (0, 1):

@@ -136,9 +136,24 @@ void test_the_place_of_the_page_is_flown_through(void)
                                   "/examples/hall.place --set plant.platform=0 "
                                   "--duration 36 2>&1";
 
-    TEST_ASSERT_TRUE_MESSAGE(child_plomada(command, output, sizeof output) <= 1, output);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, child_plomada(command, output, sizeof output), output);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, figure("ground_contacts"));
     TEST_ASSERT_EQUAL_DOUBLE(0.0, figure("cuts"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "\nNot judged, for --place is another course: overshoot_mm, "
+                                                "hover_rms_mm, hover_mean_error_mm, terrain_rms_mm, "
+                                                "recovery_s, undershoot_mm, thrust_std_n\nMET: what could be "
+                                                "judged of est-60cm-ramp\n"),
+                                 output);
+    TEST_ASSERT_NULL_MESSAGE(strstr(output, "  recovery_s "), output);
+}
+
+void test_who_expects_nothing_has_met_nothing(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, fly(FLIGHT "name mine\n", ""));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "\nNothing was judged: mine expects nothing\n"), output);
+    TEST_ASSERT_NULL_MESSAGE(strstr(output, "MET"), output);
+    TEST_ASSERT_EQUAL_INT(2, fly(FLIGHT, "--duration 1"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "--duration: must be more than 1 s"), output);
 }
 
 void test_what_is_wrong_in_a_place_is_told_with_its_line(void)

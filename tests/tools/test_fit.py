@@ -11,6 +11,7 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parents[2]
@@ -20,6 +21,7 @@ import flight_log  # noqa: E402
 import forecast  # noqa: E402
 import model  # noqa: E402
 import tune_vehicle  # noqa: E402
+import numpy  # noqa: E402
 import verdict  # noqa: E402
 
 PROGRAM = None
@@ -183,6 +185,34 @@ class Fit(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertIn("the forecast held as far as it was flown, 1 of 3 figures; not in this flight: recovery_s, undershoot_mm", done.stdout)
 
+    def course(self, period_s, outliers=(), falls=True):
+        """Times, heights and references: a ramp, an edge of 0.25 m at 11 s, and heights that lie by 0.3 m."""
+        scan_s = numpy.arange(1.0, 20.0, 0.108)
+        scan_m = numpy.where(scan_s < 11.0, 0.6, 0.6 + 0.25 * numpy.maximum(1.0 - falls * (scan_s - 11.0) / 1.2, 0.0))
+        for at_s in outliers:
+            scan_m[numpy.searchsorted(scan_s, at_s)] += 0.3
+        t_s = numpy.arange(1.2, 19.0, period_s)
+        return t_s, scan_m[numpy.searchsorted(scan_s, t_s, "right") - 1], numpy.full(len(t_s), 0.6)
+
+    def test_one_wrong_height_is_no_edge_and_hides_none(self):
+        for period_s in (0.01, 0.108):      # of fly --csv, and a row for each scan
+            for outliers in ((), (9.5,), (8.0, 13.0), (11.0,), (10.9,)):
+                with self.subTest(period_s=period_s, outliers=outliers):
+                    found = forecast.edges(*self.course(period_s, outliers))
+                    self.assertEqual(len(found), 1)
+                    self.assertAlmostEqual(found[0], 11.0, delta=0.25)
+
+    def test_a_height_that_never_comes_back_is_told_as_fly_tells_it(self):
+        for falls, least, most in ((True, 0.8, 1.2), (False, 3.97, 3.97)):
+            with mock.patch.object(forecast, "held", lambda path, falls=falls: self.course(0.01, falls=falls)):
+                self.assertTrue(least <= forecast.quality("")["recovery_s"] <= most)
+        self.assertIn(f"A recovery of {forecast.NEVER_S} s is no measured time", (ROOT / "docs/fit.md").read_text(encoding="utf-8"))
+
+    def test_what_is_printed_is_compared(self):
+        expected = {"low": 3.5, "high": 3.89}
+        self.assertEqual([verdict.compared(expected, value) for value in (3.8900000000000006, 3.91, 3.499999, 3.4)],
+                         ["held", "NOT HELD", "held", "better than forecast"])
+
     def test_how_often_a_right_forecast_fails_by_chance_is_said_and_stands_on_the_page(self):
         self.assertAlmostEqual(forecast.fails_by_chance(1), 0.05)
         self.assertAlmostEqual(forecast.fails_by_chance(3), 0.142625)
@@ -204,6 +234,15 @@ class Fit(unittest.TestCase):
             self.assertEqual(done.returncode, status, done.stderr)
             self.assertNotIn("Broken", done.stderr)
         os.close(writes)
+
+    def test_a_flight_that_is_given_twice_is_refused(self):
+        log = self.fly(4720, {})
+        copied = self.dir / "copied.csv"
+        shutil.copy(log, copied)
+        for other in (log, copied):
+            done, vehicle = self.fit(log, other)
+            self.assertEqual((done.returncode, vehicle), (2, None))
+            self.assertIn(f"{other}: the same flight as in {log}; name each flight once", done.stderr)
 
     def test_a_fit_never_writes_over_a_log_that_it_reads(self):
         logs = [self.dir / "a.csv", self.dir / "b.png"]
@@ -366,6 +405,22 @@ class Tuning(unittest.TestCase):
             figures = json.loads(subprocess.run(f"{record['command']} --json -", shell=True, stdin=subprocess.DEVNULL,
                                                 stderr=subprocess.DEVNULL, stdout=subprocess.PIPE, check=False).stdout)
             self.assertEqual(figures, record["figures"])
+
+    def test_a_forecast_is_not_written_over_the_vehicle_and_numbers_of_nothing_are_refused(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            for name in ("vehicle.json", "forecast.flights.jsonl"):
+                path = Path(scratch, name)
+                path.write_text(json.dumps(FOUND))
+                out = Path(scratch, name.replace(".flights.jsonl", ".json"))
+                with contextlib.redirect_stderr(io.StringIO()) as err:
+                    self.assertEqual(tune_vehicle.main([str(path), "--out", str(out), "--program", PROGRAM]), 2)
+                self.assertIn(f"{path}: is read here; another --out", err.getvalue())
+                self.assertEqual(json.loads(path.read_text()), FOUND)
+            for option in ("--draws", "--budget", "--fresh", "--forecast"):
+                with self.assertRaises(SystemExit) as end, contextlib.redirect_stderr(io.StringIO()) as err:
+                    tune_vehicle.main([str(path), option, "0"])
+                self.assertEqual(end.exception.code, 2)
+                self.assertIn(f"argument {option}: at least 1", err.getvalue())
 
     def test_what_is_no_vehicle_or_no_forecast_is_refused_by_its_name(self):
         with tempfile.TemporaryDirectory() as scratch:

@@ -274,7 +274,7 @@ class Drawing(Case):
         text = self.write("text.txt", f"{LINE}\n")
         for arguments, reason in (((junk,), "neither a flight CSV, an XCTU console log nor telemetry text"),
                                   ((self.dir / "none.csv",), "No such file"),
-                                  ((text, text), "only flight CSVs can be drawn together")):
+                                  ((text, text), "only CSVs of `plomada fly --csv` can be drawn together; draw each of these alone")):
             done = self.plot(*arguments)
             self.assertEqual((done.returncode, done.stdout, done.stderr.count("\n")), (2, "", 1), done.stderr)
             self.assertIn(reason, done.stderr)

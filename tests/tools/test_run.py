@@ -83,6 +83,13 @@ class Run(unittest.TestCase):
         self.assertRegex(told("300"), r"^processor time: 1 s in build: 1 s, of the 300 s that they may take\n$")
         self.assertRegex(told("0.5"), r", MORE than the 0 s")
 
+    def test_what_is_no_build_directory_is_named(self):
+        for words in ((), ("test_flight",)):
+            done = subprocess.run([sys.executable, "-B", RUN, *words], capture_output=True, text=True, check=False)
+            self.assertEqual((done.returncode, done.stdout), (1, ""))
+            self.assertIn("no build directory with tests; run.py BUILD -R NAME runs one test", done.stderr)
+            self.assertNotIn("Traceback", done.stderr)
+
     def test_a_run_that_finds_no_test_fails(self):
         self.assertNotEqual(self.run_tests("-L", "nowhere")[0], 0)
 

@@ -68,6 +68,16 @@ class Names(unittest.TestCase):
             self.assertIn(f"make {goal}: LOG: no file {self.dir}/a. Where LOG names several files, none of them may have a blank in its name", done.stderr)
         self.assertIn(str(self.file), self.words("plot", f"LOG={other} {self.dir}/a?b/*.c"))
 
+    def test_a_law_that_is_not_there_is_named_and_one_that_was_flown_is_too(self):
+        done = subprocess.run(["make", "-C", ROOT, "ground-vehicle", "FILE=nope.c", "setup=true"], check=False, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("make ground: no file nope.c\n", done.stderr)
+        self.tool.write_text("#!/bin/sh\n", encoding="utf-8")      # what builds is run by make -n too
+        for typed, law in (("FILE=my.c", "my.c"), ("file=my.c", "examples/my_law/law_mine.c")):
+            recipe = subprocess.run(["make", "-n", "-C", ROOT, "mine", typed, "MAKE=true"], check=False, capture_output=True, text=True,
+                                    env=os.environ | {"PATH": f"{self.dir}:{os.environ['PATH']}"}).stdout
+            self.assertIn(f'echo "your law: {law}"', recipe)
+
 
 class Setup(unittest.TestCase):
     def setUp(self):

@@ -292,6 +292,17 @@ class Saying(unittest.TestCase):
                       ("--fly", "calm/1/EST/out")):
             self.assertEqual(self.campaign(*words)[0], 2, words)
 
+    def test_what_would_be_dropped_without_a_word_is_refused(self):
+        fly = ("--fly", "calm/1/EST")
+        for words, said in ((("--lies", "4", "--healthy", "4"), "one of --healthy, --lies and --battery, not --healthy and --lies"),
+                            ((*fly, "--set", "plant.tau=0.3"), "without --set"), ((*fly, "--vehicle", "v.json"), "without --vehicle"),
+                            ((*fly, "--law", "PID", "--runs", "3"), "without --law, --runs"), ((*fly, "--lies"), "without --lies"),
+                            (("--law", "EST", "--set", "LAW=PID"), "--set LAW=: the law of a flight comes from --law")):
+            with self.assertRaises(SystemExit) as end, contextlib.redirect_stderr(io.StringIO()) as err:
+                campaign.main(list(words))
+            self.assertEqual(end.exception.code, 2, words)
+            self.assertIn(said, err.getvalue())
+
     def test_a_name_of_a_flight_says_which_part_of_it_is_unknown(self):
         """It said `not of the form SITUATION/NUMBER/LAW` of a name that was of that form; musts.py took foo/1/EST for that too, and fell over foo."""
         campaigner = str(ROOT / "tools/campaign/campaign.py")

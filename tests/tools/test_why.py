@@ -130,6 +130,24 @@ class Short(OfTenSeconds):
         for name in one.column:
             numpy.testing.assert_array_equal(one.column[name], other.column[name])
 
+    def test_of_several_dumps_it_says_which_one_it_answers_for_and_one_in_utf_16_is_one(self):
+        text = self.short("nothing", csv=False).with_suffix(".log").read_bytes().decode("latin-1")
+        for name, octets, dump in (("one.log", text.encode("utf-16"), ""), ("two.log", (text + text[:len(text) // 2]).encode("latin-1"), "dump 1 of 2"),
+                                   ("last.log", (text[:len(text) // 2] + "\r\n" + text).encode("latin-1"), "dump 2 of 2")):
+            (self.dir / name).write_bytes(octets)
+            seen = flight.read(self.dir / name, PROGRAM)
+            self.assertEqual(seen.dump, dump)
+            self.assertEqual(why.which(cases.Case(seen, [], None, None)),
+                             f"This is {dump}, the longest; `plomada log` makes a CSV of each." if dump else "")
+
+    def test_a_piece_of_a_flight_that_is_too_short_is_told_as_one(self):
+        rows = self.short("nothing").read_text(encoding="utf-8").splitlines()
+        piece = self.dir / "piece.csv"
+        aloft = next(number for number, row in enumerate(rows) if ",FLYING," in row)
+        piece.write_text("\n".join([rows[0], *rows[aloft:aloft + 100]]) + "\n", encoding="utf-8")
+        self.assertRegex(why.sentences(*why.ask(piece, PROGRAM))[0], r"too short\. Of [012]\.\d s in the air \d+ heights can be used; it takes 1\.5 s in one piece, "
+                         "and 12 heights")
+
     def test_what_is_no_flight_is_refused_with_a_reason(self):
         self.refused(self.dir / "none.csv", "No such file")
         text = self.dir / "text.csv"
@@ -142,6 +160,19 @@ class Short(OfTenSeconds):
         bench.write_text("t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags,up_mps2,pulse_us,age_s,doubt,limit\n"
                          + "".join(f"{0.025 * k:.3f},0.000,0.000,,0.000,0.000,0.0,0.0,GROUND,0,0.0,2000,0.07,,\n" for k in range(400)), encoding="utf-8")
         self.refused(bench, "no flight")
+
+    def test_without_its_packages_it_says_what_installs_them(self):
+        """After `make fly` build/venv has those of the pictures alone."""
+        for name in ("build/venv/bin", "tools/why"):
+            (self.dir / name).mkdir(parents=True)
+        program = shutil.copy(PROGRAM, self.dir / "build/plomada")
+        (self.dir / "build/venv/bin/python").symlink_to(sys.executable)
+        (self.dir / "tools/why/why.py").write_text("import no_such_package\n")
+        for word in ("--help", "flight.csv"):
+            done = subprocess.run([program, "why", word], check=False, capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn("its Python: is not installed; `make why LOG=FILE` installs it", done.stderr)
+            self.assertNotIn("Traceback", done.stderr)
 
     def test_a_picture_that_cannot_be_written_is_status_2(self):
         path = self.dir / "any.csv"

@@ -90,6 +90,20 @@ def folder_of(words):
     return CAMPAIGNS / name
 
 
+def refuse_pairs(parser, arguments):
+    """Options of which one alone would be obeyed, without a word about the other."""
+    named = [f"--{name}" for name in survey.RUNS if getattr(arguments, name)]
+    if len(named) > 1:
+        parser.error(f"one of --healthy, --lies and --battery, not {' and '.join(named)}")
+    beside = {"--law": arguments.law_words, "--set": arguments.set_words, "--vehicle": arguments.vehicle, "--runs": arguments.runs,
+              "--only": arguments.only, "--held-out": arguments.held_out, "--page": arguments.page} | dict.fromkeys(named, True)
+    beside = [name for name, given in beside.items() if given]
+    if arguments.fly and beside:
+        parser.error(f"--fly flies a flight as it was, without {', '.join(beside)}; `plomada fly`, which it prints, takes --set")
+    if any(word.upper().startswith("LAW=") for word in arguments.set_words):
+        parser.error("--set LAW=: the law of a flight comes from --law")
+
+
 def surveyed(arguments):
     """(Name of the table, flights in each situation), or None."""
     return next(((name, getattr(arguments, name)) for name in survey.RUNS if getattr(arguments, name)), None)
@@ -172,6 +186,7 @@ def words_of_laws(arguments):
 
 def choose(parser, arguments):
     """Laws, sets and assignments; what --plan adds, and the program's own laws that are named, are known from here on."""
+    refuse_pairs(parser, arguments)
     if arguments.plan:
         try:
             plan.extend(json.loads(arguments.plan.read_text(encoding="utf-8")), plan.of_program(arguments.program))

@@ -160,9 +160,23 @@ def vehicle_of(found, other, stretches, logs, rng, volts):
     return result
 
 
+def stretches_of(logs):
+    """Of all logs. A flight that counts twice would make the intervals too narrow."""
+    found, known = [], {}
+    for log in logs:
+        stretches = flight_log.stretches(log)
+        rays = [stretch.ray_s.tobytes() + stretch.ray_height_m.tobytes() for stretch in stretches]
+        other = next((known[key] for key in rays if key in known), None)
+        if other is not None:
+            raise flight_log.Unfit(f"{log}: the same flight as in {other}; name each flight once")
+        known |= dict.fromkeys(rays, log)
+        found += stretches
+    return found
+
+
 def fit_logs(logs):
     """(vehicle for JSON, the fit, stretches). Raises flight_log.Unfit."""
-    stretches = [stretch for log in logs for stretch in flight_log.stretches(log)]
+    stretches = stretches_of(logs)
     volts = model.compare_volts(stretches)
     fits = sorted((model.fit(kind, stretches) for kind in model.KINDS), key=lambda fit: fit.loss)
     rng = numpy.random.default_rng(1)

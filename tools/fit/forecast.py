@@ -18,8 +18,10 @@ sys.path.insert(0, str(ROOT / "tools/campaign"))
 import fleet  # noqa: E402
 
 EDGE_M, EDGE_S = 0.15, 0.3      # a height that jumps so far from scan to scan, the reference steady so long, has passed an edge
+LASTS_S = 0.33                  # when it stays there: three scans on either side, of which one may lie
 SETTLED_S = 3.5                 # after a change of the reference
 AFTER_EDGE_S = 3.98             # as the scenarios' metrics
+NEVER_S = 3.97                  # recovery of a flight that was not within at the end of it; fly and docs/fit.md say the same
 WITHIN_M = 0.05
 COVERAGE = 0.9                  # of each interval, as intervals() says
 FIGURES = {"hover_rms_mm": "mm", "recovery_s": "s", "undershoot_mm": "mm"}
@@ -157,13 +159,19 @@ def fly_all_logged(program, flights):
     return Flights(program).each(fly_logged, flights)
 
 
+def lasts(t_s, height_m, k):
+    """Whether the height stays where it jumped to: one height that lies jumps there and back."""
+    first, end = numpy.searchsorted(t_s, (t_s[k] - LASTS_S, t_s[k] + LASTS_S))
+    return abs(numpy.median(height_m[k:end]) - numpy.median(height_m[first:k])) > EDGE_M
+
+
 def edges(t_s, height_m, reference_m):
     """Instants at which the ground steps away under a steady reference."""
     found = []
     for k in range(1, len(t_s)):
         before = numpy.searchsorted(t_s, t_s[k] - EDGE_S)
         steady = reference_m[before] == reference_m[k] and t_s[k] - t_s[before] > 0.5 * EDGE_S
-        jumped = abs(height_m[k] - height_m[k - 1]) > EDGE_M
+        jumped = abs(height_m[k] - height_m[k - 1]) > EDGE_M and lasts(t_s, height_m, k)
         if steady and jumped and (not found or t_s[k] - found[-1] > AFTER_EDGE_S):
             found.append(t_s[k])
     return found
@@ -199,7 +207,7 @@ def quality(path):
     if passed:
         after = (t_s >= passed[-1]) & (t_s <= passed[-1] + AFTER_EDGE_S)
         off = numpy.abs(error_m[after]) > WITHIN_M
-        result["recovery_s"] = float(t_s[after][off][-1] - passed[-1]) if off.any() else 0.0
+        result["recovery_s"] = NEVER_S if off[-1] else float(t_s[after][off][-1] - passed[-1]) if off.any() else 0.0
         first = numpy.sign(error_m[after][0])
         result["undershoot_mm"] = 1e3 * float(max(0.0, numpy.max(-first * error_m[after])))
     return result

@@ -26,6 +26,8 @@ from pathlib import Path
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import forecast  # noqa: E402
+import campaign  # noqa: E402  on the path by forecast
+import flight_log  # noqa: E402
 import model  # noqa: E402
 import numpy  # noqa: E402
 from scipy.stats import t as student  # noqa: E402
@@ -325,13 +327,18 @@ def read_arguments(argv):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("vehicle", type=Path)
     parser.add_argument("--law", choices=GAINS, default="EST")
-    parser.add_argument("--draws", type=int, default=10, help="vehicles that each candidate flies (10)")
-    parser.add_argument("--budget", type=int, default=20, help="candidates (20)")
-    parser.add_argument("--fresh", type=int, default=FRESH, help=f"pairs of flights that prove a candidate ({FRESH})")
-    parser.add_argument("--forecast", type=int, default=60, help="flights of the forecast (60)")
+    parser.add_argument("--draws", type=campaign.positive, default=10, help="vehicles that each candidate flies (10)")
+    parser.add_argument("--budget", type=campaign.positive, default=20, help="candidates (20)")
+    parser.add_argument("--fresh", type=campaign.positive, default=FRESH, help=f"pairs of flights that prove a candidate ({FRESH})")
+    parser.add_argument("--forecast", type=campaign.positive, default=60, help="flights of the forecast (60)")
     parser.add_argument("--program", type=Path, default=forecast.ROOT / "build/plomada")
-    parser.add_argument("--out", type=Path, default=forecast.ROOT / "build/forecast.json", metavar="FILE")
+    parser.add_argument("--out", type=Path, default=forecast.ROOT / "build/forecast.json", metavar="FILE",
+                        help="the forecast, for verdict.py (build/forecast.json); its flights stand beside it in a .flights.jsonl")
     return parser.parse_args(argv)
+
+
+def flights_of(out):
+    return out.with_suffix(".flights.jsonl")
 
 
 def predict(flights, vehicle, law, settings, count):
@@ -343,7 +350,7 @@ def find(arguments, vehicle, program):
     """(proposal, forecast)"""
     candidates = 4
     most = (arguments.budget + 1) * arguments.draws + (candidates + 1) * len(forecast.worlds(vehicle)) * arguments.fresh + arguments.forecast
-    with forecast.fleet.Store(arguments.out.with_suffix(".flights.jsonl")) as store:
+    with forecast.fleet.Store(flights_of(arguments.out)) as store:
         flights = forecast.Flights(program, store, forecast.fleet.Progress(most))
         proposal = tune(flights, vehicle, arguments.law, arguments.draws, arguments.budget, arguments.fresh)
         return proposal, predict(flights, vehicle, arguments.law, proposal.settings, arguments.forecast)
@@ -361,6 +368,7 @@ def main(argv=None):
     arguments = read_arguments(argv)
     program = str(arguments.program.resolve())
     try:
+        flight_log.recording.apart([arguments.out, flights_of(arguments.out)], [arguments.vehicle], "--out")
         vehicle = forecast.load_vehicle(arguments.vehicle)
         proposal, expected = find(arguments, vehicle, program)
         lines = list(told(arguments.law, vehicle, proposal, defaults_of(program)))
@@ -369,7 +377,7 @@ def main(argv=None):
     except KeyboardInterrupt:
         print("tune: interrupted; what was flown is kept, the same command goes on", file=sys.stderr)
         return 130
-    except (forecast.fleet.Broken, OSError, ValueError) as error:
+    except (forecast.fleet.Broken, flight_log.Unfit, OSError, ValueError) as error:
         print(f"tune: {error}", file=sys.stderr)
         return 2
     print("\n".join(lines))

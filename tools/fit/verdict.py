@@ -40,7 +40,8 @@ def compared(f, value):
     """Each figure is an error: the less, the better."""
     if value is None:
         return "not in this flight"
-    return "NOT HELD" if value > f["high"] else "better than forecast" if value < f["low"] else "held"
+    value, low, high = (float(f"{number:.3g}") for number in (value, f["low"], f["high"]))      # as they are printed
+    return "NOT HELD" if value > high else "better than forecast" if value < low else "held"
 
 
 def told(words):

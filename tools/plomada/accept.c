@@ -39,7 +39,9 @@ static const char usage_end[] =
     "\n"
     "  --afresh            begins anew; without it an interrupted acceptance goes on where it was "
     "(PREFIX.state)\n\n"
-    "Exit status: 0 no item failed, 1 one did, or it was interrupted, 2 usage or no such device.\n";
+    "Exit status: 0 all of them passed, 1 one failed, or it was interrupted, 2 usage or no such device, 3 "
+    "none failed, but "
+    "one was skipped.\n";
 
 enum { OPT_REPORT = 1, OPT_POWER, OPT_UNATTENDED, OPT_FLIGHT, OPT_ITEMS, OPT_AFRESH };
 
@@ -67,7 +69,6 @@ static struct {
     accept_verdict_t verdict[ITEMS_MAX];
     char detail[ITEMS_MAX][ACCEPT_DETAIL_MAX];
     char date[32];
-    bool passed;
 } found;
 
 static bool complain(const char *what, const char *subject)
@@ -219,6 +220,62 @@ static void load_state(void)
     printf("going on with %s.state (--afresh begins anew)\n", order.report);
 }
 
+/* ---- what it comes to ---- */
+
+#define ACCEPT_INCOMPLETE 3
+
+static int count(accept_verdict_t verdict)
+{
+    int result = 0;
+
+    for (int i = 0; i < accept_item_count; i++) {
+        result += found.verdict[i] == verdict ? 1 : 0;
+    }
+    return result;
+}
+
+static int count_tried(void)
+{
+    return count(ACCEPT_PASS) + count(ACCEPT_FAIL);
+}
+
+static bool all_done(void)
+{
+    for (int i = 0; i < accept_item_count; i++) {
+        if (chosen(accept_items[i].name) && found.verdict[i] == ACCEPT_OPEN) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static int status(void)
+{
+    if (count(ACCEPT_FAIL) > 0 || !all_done()) {
+        return 1;
+    }
+    return count(ACCEPT_SKIP) > 0 ? ACCEPT_INCOMPLETE : 0;
+}
+
+static const char *words(void)
+{
+    static char text[64];
+    const int tried = count_tried();
+
+    switch (status()) {
+    case 0:
+        snprintf(text, sizeof text, "passed: %d of %d items tried", tried, accept_item_count);
+        break;
+    case ACCEPT_INCOMPLETE:
+        snprintf(text, sizeof text, "incomplete: %d of %d items tried", tried, accept_item_count);
+        break;
+    default:
+        snprintf(text, sizeof text, "NOT passed: %d failed, %d of %d items tried", count(ACCEPT_FAIL), tried,
+                 accept_item_count);
+    }
+    return text;
+}
+
 /* ---- the report ---- */
 
 static const char *firmware_version(void)
@@ -236,7 +293,9 @@ static void write_json(FILE *out)
     json_t json;
 
     json_begin(&json, out);
-    json_flag(&json, "passed", found.passed);
+    json_flag(&json, "passed", status() == 0);
+    json_text(&json, "verdict", words());
+    json_whole(&json, "tried", count_tried());
     json_text(&json, "date", found.date);
     json_text(&json, "chip", "TMS320F28377S (LAUNCHXL-F28377S)");
     json_text(&json, "firmware", firmware_version());
@@ -262,7 +321,7 @@ static void write_json(FILE *out)
 static void write_markdown(FILE *out)
 {
     fprintf(out, "# Acceptance of a board: %s\n\n%s, TMS320F28377S on a LAUNCHXL-F28377S, firmware: %s.\n",
-            found.passed ? "passed" : "NOT passed", found.date, firmware_version());
+            words(), found.date, firmware_version());
     fprintf(out,
             "Adapters: scanner %s, IMU %s, radio %s. Throttle pin: %s.\n\n| item | verdict | found "
             "|\n|---|---|---|\n",
@@ -275,11 +334,10 @@ static void write_markdown(FILE *out)
     }
 }
 
-static bool write_report(bool passed)
+static bool write_report(void)
 {
     const time_t now = time(NULL);
 
-    found.passed = passed;
     strftime(found.date, sizeof found.date, "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));
     const bool json = write_file("json", write_json);
     return write_file("md", write_markdown) && json;
@@ -322,31 +380,19 @@ static void try_item(int i)
     }
 }
 
-static bool try_all(void)
+static void try_all(void)
 {
-    bool failed = false, open = false;
+    bool open = false;
 
     for (int i = 0; i < accept_item_count && !open; i++) {
         if (found.verdict[i] == ACCEPT_OPEN && chosen(accept_items[i].name)) {
             try_item(i);
             open = found.verdict[i] == ACCEPT_OPEN;
         }
-        failed = failed || found.verdict[i] == ACCEPT_FAIL;
     }
     if (open) {
         printf("interrupted: the same command goes on from here\n");
     }
-    return !failed && !open;
-}
-
-static bool all_done(void)
-{
-    for (int i = 0; i < accept_item_count; i++) {
-        if (chosen(accept_items[i].name) && found.verdict[i] == ACCEPT_OPEN) {
-            return false;
-        }
-    }
-    return true;
 }
 
 static void forget_state(void)
@@ -384,7 +430,6 @@ static int run(void)
     world_config_t config = {.seed = 1, .quadrotor = quadrotor_default, .line = terminal_line};
     board_wire_t failed;
     const char *error;
-    bool passed;
 
     if (is_of_another()) {
         complain("the report of another acceptance; another --report PREFIX, or --afresh", order.report);
@@ -407,16 +452,17 @@ static int run(void)
         return 2;
     }
     (void)world_run_until(SIM_S / 2); /* what still comes from before is no answer */
-    passed = try_all();
+    try_all();
     world_close();
-    if (!write_report(passed)) {
+    if (!write_report()) {
         return 2;
     }
     if (all_done()) {
         forget_state();
     }
-    printf("%s: %s.md, %s.json\n", passed ? "ACCEPTED" : "NOT ACCEPTED", order.report, order.report);
-    return passed ? 0 : 1;
+    printf("%s%s; %s.md, %s.json\n", status() == 0 && count_tried() == accept_item_count ? "ACCEPTED, " : "",
+           words(), order.report, order.report);
+    return status();
 }
 
 int command_accept(int argc, char **argv)

@@ -327,7 +327,7 @@ static bool check_arguments(const request_t *request)
         return complain("goes with virtual time", "--until-down");
     }
     return options->realtime || options->duration_s == 0.0 || options->duration_s > METRICS_REFERENCE_S ||
-           complain("not more than 1 s", "--duration");
+           complain("must be more than 1 s, when the reference comes", "--duration");
 }
 
 static bool no_such_scenario(const char *name)
@@ -378,7 +378,33 @@ static bool read_arguments(request_t *request, int argc, char **argv)
     return find_scenario(request, argv[optind]) && check_arguments(request);
 }
 
-/* What --duration leaves of the scenario: what is expected behind the landing command cannot be. */
+/* Whether --place took away the course of which this is expected. */
+static bool lost_course(const request_t *request, metric_t metric)
+{
+    switch (metric) {
+    case METRIC_OVERSHOOT_MM:
+    case METRIC_HOVER_RMS_MM:
+    case METRIC_HOVER_MEAN_ERROR_MM:
+    case METRIC_THRUST_STD_N:
+    case METRIC_TERRAIN_RMS_MM:
+    case METRIC_RECOVERY_S:
+    case METRIC_SETTLED_S:
+    case METRIC_UNDERSHOOT_MM:
+    case METRIC_MAX_ERROR_MM:
+    case METRIC_ALTITUDE_ERROR_MM:
+        return request->place_path != NULL;
+    default:
+        return false;
+    }
+}
+
+/* What is expected behind the landing command of --duration cannot be. */
+static bool landed_before(const request_t *request, const metrics_t *metrics, metric_t metric)
+{
+    return request->flight.duration_s != 0.0 && metrics->untold[metric];
+}
+
+/* What --duration and --place leave of the scenario. */
 static scenario_t as_flown(const request_t *request, const metrics_t *metrics)
 {
     scenario_t flown = *request->scenario;
@@ -387,27 +413,33 @@ static scenario_t as_flown(const request_t *request, const metrics_t *metrics)
     for (int i = 0; i < request->scenario->expectation_count; i++) {
         const expectation_t *e = &request->scenario->expectations[i];
 
-        if (request->flight.duration_s == 0.0 || !metrics->untold[e->metric]) {
+        if (!lost_course(request, e->metric) && !landed_before(request, metrics, e->metric)) {
             flown.expectations[flown.expectation_count++] = *e;
         }
     }
     return flown;
 }
 
-static void tell_untold(FILE *out, const scenario_t *whole, const scenario_t *flown, const metrics_t *metrics)
+static void tell_left_out(FILE *out, const request_t *request, const metrics_t *metrics)
 {
-    const char *before = "Not judged, for the flight lands before:";
+    static const char *const why[] = {"the flight lands before", "--place is another course"};
 
-    if (flown->expectation_count == whole->expectation_count) {
-        return;
-    }
-    for (int i = 0; i < whole->expectation_count; i++) {
-        if (metrics->untold[whole->expectations[i].metric]) {
-            fprintf(out, "%s %s", before, metric_names[whole->expectations[i].metric]);
-            before = ",";
+    for (int lost = 0; lost < 2; lost++) {
+        bool any = false;
+
+        for (int i = 0; i < request->scenario->expectation_count; i++) {
+            const metric_t metric = request->scenario->expectations[i].metric;
+
+            if (lost_course(request, metric) ? lost : !lost && landed_before(request, metrics, metric)) {
+                if (!any) {
+                    fprintf(out, "Not judged, for %s:", why[lost]);
+                }
+                fprintf(out, "%s %s", any ? "," : "", metric_names[metric]);
+                any = true;
+            }
         }
+        fputs(any ? "\n" : "", out);
     }
-    fputc('\n', out);
 }
 
 static bool print_verdict(FILE *out, const request_t *request, const flight_result_t *result)
@@ -426,13 +458,14 @@ static bool print_verdict(FILE *out, const request_t *request, const flight_resu
     if (request->flight.realtime) {
         return true;
     }
-    tell_untold(out, request->scenario, &flown, &result->metrics);
+    tell_left_out(out, request, &result->metrics);
     met = figures_judge(out, &flown, &result->metrics);
     if (met) {
         fprintf(out,
                 flown.expectation_count < request->scenario->expectation_count
                     ? "MET: what could be judged of %s\n"
                 : flown.expectation_count > 0 ? "MET: all expectations of %s\n"
+                : flown.fate == FATE_EITHER   ? "Nothing was judged: %s expects nothing\n"
                                               : "MET: %s expects no figure\n",
                 request->scenario->name);
     }

@@ -11,6 +11,7 @@
 
 #define SCRIPT "/../tools/why/why.py"
 #define PYTHON "/../build/venv/bin/python"
+#define PACKAGES "/../build/venv/campaign.txt" /* setup.sh writes it when they are installed */
 #define PROGRAM_OPTION "--program"
 #define FIXED_WORDS 6 /* python, -B, the script, the option, its value, and the NULL behind the last */
 
@@ -28,7 +29,7 @@ static int complain(const char *what, const char *subject)
 
 int command_why(int argc, char **argv)
 {
-    static char self[PATH_MAX], directory[PATH_MAX], script[PATH_MAX], python[PATH_MAX];
+    static char self[PATH_MAX], directory[PATH_MAX], script[PATH_MAX], python[PATH_MAX], packages[PATH_MAX];
     const ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
 
     if (length <= 0) {
@@ -40,7 +41,7 @@ int command_why(int argc, char **argv)
         return complain("needs the sources; run the program that `make build` built in their tree",
                         "tools/why");
     }
-    if (!beside(python, directory, PYTHON)) {
+    if (!beside(packages, directory, PACKAGES) || !beside(python, directory, PYTHON)) {
         return complain("is not installed; `make why LOG=FILE` installs it", "its Python");
     }
     char **words = calloc((size_t)argc + FIXED_WORDS, sizeof *words);

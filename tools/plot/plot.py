@@ -363,7 +363,7 @@ def main(arguments):
         with tempfile.TemporaryDirectory(prefix="plomada-") as scratch:
             pictures = groups(with_dumps_converted(options.files, options.program, scratch))
             if len(pictures) > 1 and len(options.files) > 1:
-                raise recording.Unreadable("only flight CSVs can be drawn together")
+                raise recording.Unreadable("only CSVs of `plomada fly --csv` can be drawn together; draw each of these alone")
             if len(pictures) > 1 and not Path(output).is_dir():
                 raise recording.Unreadable(f"{options.files[0]}: {len(pictures)} dumps make as many pictures: -o DIRECTORY/")
             for group in pictures:

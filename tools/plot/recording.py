@@ -89,7 +89,7 @@ DUMP_ROW = re.compile(rb"OK LOG [0-9]|4F4B204C4F47203[0-9]", re.IGNORECASE)     
 
 def has_dump(path):
     """Whether rows of a #LOG dump are in a file that is not CSV already."""
-    raw = octets_of(path)
+    raw = octets_of(path).replace(b"\0", b"")       # of a text in UTF-16, too
     return not raw.lstrip(b"\xef\xbb\xbf").startswith(b"t_s,") and DUMP_ROW.search(raw) is not None
 
 

@@ -47,6 +47,11 @@ def cost_of(costs, name):
     return costs.get(name, costs.get(name.partition("_")[0], 0))
 
 
+def missing(table, costs):
+    """Names of the rows whose cost stays the table's."""
+    return [row.name for row in table if not cost_of(costs, row.name)]
+
+
 def longest(holds):
     """(ps, whose) of the gate that was held for longest."""
     return max(((time, gate) for gate, time in holds.items() if time > 0), default=(0, "-"), key=lambda hold: hold[0])

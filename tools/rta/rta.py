@@ -120,6 +120,22 @@ def totals_beside(table, board, options):
     yield f"growth: at {told:.2f} times the table's costs {name} is late, at {factor:.2f} times the board's {other}"
 
 
+def measured_of(table, path):
+    """(costs, holds) of a board that measured something."""
+    found = measured.read(path)
+    if len(measured.missing(table, found[0])) == len(table):
+        raise Wrong(f"{path}: no row of the table was measured, so there is no verdict; fly, and then ask #PERF COSTS")
+    return found
+
+
+def said(table, found, holds):
+    """The verdict, and before it what it rests on that the board has not told."""
+    left_out = measured.missing(table, found[0]) if found else []
+    if left_out:
+        yield f"not measured, taken from the table: {', '.join(left_out)}"
+    yield f"{'all' if holds else 'NOT all'} deadlines hold{' on this board' if found else ''}"
+
+
 def figure(number, digits):
     return float(f"{number:.{digits}g}") if math.isfinite(number) else None
 
@@ -155,7 +171,7 @@ def run(words):
     if args.print:
         print(text, end="")
         return 0
-    found = measured.read(args.measured) if args.measured else None
+    found = measured_of(table, args.measured) if args.measured else None
     board = measured.apply(table, *found) if found else copy.copy(table)
     chain = chain_of(board, args.chain)
     holds = analysis.late_task(board, options) is None
@@ -167,7 +183,7 @@ def run(words):
     if chain:
         print(f"{args.chain}: {ms(analysis.chain(board, options, chain))}")
     print(*(totals_beside(table, board, options) if found else totals(board, options)), sep="\n")
-    print(f"{'all' if holds else 'NOT all'} deadlines hold{' on this board' if found else ''}")
+    print(*said(table, found, holds), sep="\n")
     return 0 if holds else 1
 
 

@@ -39,6 +39,7 @@ class Flight:
     spans: list                 # [(begin, end)] in the air
     beams: dict = field(default_factory=dict)   # columns of single mirrors, where the log has them
     ring: bool = False          # of the chip's recorder, which keeps flights only, and the latest rows
+    dump: str = ""              # which of several it is
 
     @property
     def t_s(self):
@@ -55,13 +56,15 @@ class Flight:
 
 
 def dumps_of(path, program, scratch):
+    """(the CSV of its longest dump, which of several that is, or "")"""
     copy = Path(scratch, path.name)
     copy.write_bytes(recording.octets_of(path))
     done = subprocess.run([program, "log", str(copy)], check=False, stdin=subprocess.DEVNULL, capture_output=True, text=True)
-    found = sorted(Path(scratch).glob("*.csv"), key=lambda file: file.stat().st_size)
+    found = [Path(line.rsplit(": ", 1)[0]) for line in done.stdout.splitlines()]
     if not found:
         raise Unfit(done.stderr.strip().replace(str(copy), str(path)).removeprefix("plomada log: ")[:300] or f"{path}: no dump of #LOG")
-    return found[-1]            # the longest
+    longest = max(found, key=lambda file: file.stat().st_size)
+    return longest, f"dump {found.index(longest) + 1} of {len(found)}" if len(found) > 1 else ""
 
 
 def replayed(path, program, scratch):
@@ -79,16 +82,18 @@ def read(path, program):
     """Raises Unfit, or OSError."""
     path = Path(path)
     with tempfile.TemporaryDirectory(prefix="plomada-") as scratch:
-        csv = path
+        csv, dump = path, ""
         if path.is_dir():
             csv = replayed(path, program, scratch)
         elif recording.has_dump(path):
-            csv = dumps_of(path, program, scratch)
+            csv, dump = dumps_of(path, program, scratch)
         found = recording.read(csv)
     if found.kind not in ("flight", "recorder"):
         raise Unfit(f"{path}: telemetry alone, five lines a second, does not tell why; type #LOG after the flight and save it "
                     "(docs/operator.md, flight recorder)")
-    return flight_of(path, found)
+    flight = flight_of(path, found)
+    flight.dump = dump
+    return flight
 
 
 def flight_of(path, found):
@@ -132,6 +137,11 @@ def scans_of(rays_s, meas_m):
 
 
 def spans_of(flight, aloft_m=ALOFT_M):
+    """In the air, and long enough to tell something."""
+    return [(a, b) for a, b in pieces_of(flight, aloft_m) if b - a >= SPAN_S]
+
+
+def pieces_of(flight, aloft_m=ALOFT_M):
     """In the air: neither state GROUND nor a height of the ground, and no rows missing. Heights may be missing."""
     t_s, c = flight.t_s, flight.column
     height_m = flight_log.filled(t_s, c["meas_m"])
@@ -146,7 +156,7 @@ def spans_of(flight, aloft_m=ALOFT_M):
             begin = t_s[k]
     if begin is not None:
         found.append((begin, t_s[-1]))
-    return [(a, b) for a, b in found if b - a >= SPAN_S]
+    return found
 
 
 def begins_takeoff(flight, k):

@@ -85,6 +85,11 @@ def sentences(case, found):
     named = verdict(found)
     if named:
         return [causes.TABLE[named[0]].what(found[named[0]]), causes.TABLE[named[0]].do(found[named[0]])]
+    pieces = flight.pieces_of(case.flight)
+    if case.model is None and pieces:
+        heights = sum(len(span.ray_s) for span in case.spans)
+        return [f"It does not know: the piece of flight is too short. Of {max(b - a for a, b in pieces):.1f} s in the air {heights} heights can be used; it takes "
+                f"{flight.LEAST_S:g} s in one piece, and {flight.LEAST_HEIGHTS} heights."]
     if case.model is None:
         return ["It does not know: the vehicle did not fly, and nothing in the log says why."]
     if unwell(case):
@@ -95,6 +100,10 @@ def sentences(case, found):
 def unwell(case):
     """Whether what the equations leave is more than a healthy flight has."""
     return any(abs(math.log(case.model.figures[name] / vehicle.FIGURES[name][0])) > FAR * vehicle.FIGURES[name][1] for name in NOISES)
+
+
+def which(case):
+    return f"This is {case.flight.dump}, the longest; `plomada log` makes a CSV of each." if case.flight.dump else ""
 
 
 def without_it(case, found):
@@ -155,7 +164,7 @@ def main(argv=None):
         print(f"why: {error}", file=sys.stderr)
         return 2
     flown, would = without_it(case, found)
-    said = [*sentences(case, found), *filter(None, [hint(found)])]
+    said = [*sentences(case, found), *filter(None, [hint(found), which(case)])]
     say("\n".join([*said, *([would] if would else []), table(found)]))
     import picture  # noqa: PLC0415  Matplotlib takes its second: what is wrong with a log is told before
     try:

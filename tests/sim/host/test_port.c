@@ -197,6 +197,29 @@ void test_writing_to_a_full_line_drops_and_returns(void)
     TEST_ASSERT_EQUAL_size_t(1, port_read(&users, &octet, 1, &lost));
 }
 
+/* The kernel gives the number of a closed pseudo-terminal to the next one, whoever makes it. */
+void test_a_link_is_its_programs_until_that_has_ended_and_then_anybodys(void)
+{
+    static const char path[] = "test_port.link";
+    port_t other, next;
+
+    unlink(path);
+    TEST_ASSERT_NULL(port_link(&own, path));
+    TEST_ASSERT_NULL(port_open_pty(&other, 115200));
+    TEST_ASSERT_EQUAL_STRING("is in use by another program; end that one, or take another name",
+                             port_link(&other, path));
+    port_unlink(&other, path);
+    TEST_ASSERT_EQUAL_INT(0, access(path, F_OK));
+    port_close(&users);
+    port_close(&own);
+    TEST_ASSERT_NULL(port_open_pty(&next, 115200));
+    TEST_ASSERT_NULL(port_link(&other, path));
+    port_unlink(&other, path);
+    TEST_ASSERT_NOT_EQUAL_INT(0, access(path, F_OK));
+    port_close(&other);
+    port_close(&next);
+}
+
 void test_closing_twice_is_harmless(void)
 {
     port_close(&users);

@@ -117,6 +117,16 @@ class Command(unittest.TestCase):
         self.assertRegex(out, r"(?m)^high .* LATE$")
         self.assertIn("NOT all deadlines hold on this board", out)
 
+    def test_what_the_board_did_not_measure_is_named_and_nothing_measured_is_no_verdict(self):
+        table, lines = self.write(self.TABLE), self.measured()
+        saved = self.write("\n".join(lines).replace("low longest_ns:1800000", "low longest_ns:0") + "\n", "saved.txt")
+        status, out, _ = self.rta(table, "--measured", saved)
+        self.assertEqual((status, out.splitlines()[-2:]), (0, ["not measured, taken from the table: low", "all deadlines hold on this board"]))
+        self.assertNotIn("not measured", self.rta(table, "--measured", self.write("\n".join(lines) + "\n", "whole.txt"))[1])
+        status, out, error = self.rta(table, "--measured", self.write("\n".join(self.measured(0, 0)).replace(":15000", ":0") + "\n", "idle.txt"))
+        self.assertEqual((status, out), (2, ""))
+        self.assertIn("idle.txt: no row of the table was measured, so there is no verdict", error)
+
     def test_the_console_log_of_xctu_is_read_too(self):
         text = "\r\n".join(self.measured()) + "\r\n"
         packets = [text[i:i + 37].encode().hex(" ").upper() for i in range(0, len(text), 37)]
