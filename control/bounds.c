@@ -280,6 +280,9 @@ float bounds_apply(bounds_t *bounds, const situation_t *now, float law_n)
         thrust_n = between(interval.least_n, thrust_n, interval.most_n);
         bounds->holds = (thrust_n != before_n) ? table[k].id : bounds->holds;
     }
+    if (bounds->holds == BOUND_NONE && thrust_n >= THRUST_MAX_N) {
+        bounds->holds = BOUND_ACTUATOR; /* a law asks for no more than there is */
+    }
     return thrust_n;
 }
 

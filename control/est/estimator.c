@@ -2,12 +2,10 @@
  * the filter stays at the instant of the latest rays, and keeps the IMU frames since then. A height is fused
  * at its own instant; then the frames predict the state up to now.
  * What breaks: after a reset the speed may be anything, and until two heights have told it nothing is
- * learned. Constants marked "fitted": docs/control.md; make tune LAW=EST ARGS="--constants est" searches them
- * again. */
+ * learned. Constants marked "fitted": docs/control.md. */
 #include "control/est/estimator.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
 #include "control/between.h"
@@ -27,11 +25,8 @@
 #define TERRAIN_DRIFT_MPS 0.053F /* fitted; m/s per root second */
 #define OVER_DRIFT_MPS2 0.02F    /* chosen: of the bias, while ramps are told from it; warmth is slower */
 #define LEAN_MOST 1.0F           /* 45 degrees: beyond, tilt.c cuts the thrust */
-#define NO_ACC_DRIFT_MPS2 \
-    0.4F /* of turbulence of 0.2 m/s2 that lasts 0.5 s (quadrotor.c): 0.2 sqrt(2 / 0.5) */
-
+#define NO_ACC_DRIFT_MPS2 0.4F   /* turbulence of 0.2 m/s2 for 0.5 s (quadrotor.c): 0.2 sqrt(2 / 0.5) */
 #define UNCHECKED_AFTER_RESET 2U /* two heights give the speed again */
-#define REST_SIGMA_MPS 0.02F     /* chosen: a vehicle on the ground may shake */
 
 static bool before(uint32_t a_us, uint32_t b_us)
 {
@@ -320,10 +315,7 @@ height_outcome_t estimator_fuse_height(estimator_t *e, const altitude_t *altitud
         innovation_untested(&e->test, altitude->ground);
     }
     if (at_rest) {
-        filter_correct(&e->filter, FILTER_SPEED, -e->filter.estimate.speed_mps,
-                       REST_SIGMA_MPS * REST_SIGMA_MPS);
-        filter_correct(&e->filter, FILTER_TERRAIN, -e->filter.estimate.terrain_mps,
-                       REST_SIGMA_MPS * REST_SIGMA_MPS);
+        filter_stand(&e->filter);
     }
     predict_now(e);
     return outcome;
@@ -441,6 +433,14 @@ void estimator_start(estimator_t *e, float height_m, float speed_mps, float bias
     e->test.rejected = 0U;
     e->unchecked_count = UNCHECKED_AFTER_RESET;
     e->initialised = true;
+}
+
+void estimator_move_ground(estimator_t *e, float by_mps, float bias_mps2)
+{
+    e->filter.estimate.speed_mps += by_mps;
+    e->filter.estimate.terrain_mps += by_mps;
+    e->filter.estimate.bias_mps2 = bias_mps2;
+    predict_now(e);
 }
 
 void estimator_move_bias(estimator_t *e, float by_mps2)

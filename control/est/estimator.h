@@ -104,6 +104,10 @@ void estimator_amend(estimator_t *estimator, float height_m, float speed_mps, fl
 /* The same after a gap of the frames. The next heights are fused without the innovation test. */
 void estimator_start(estimator_t *estimator, float height_m, float speed_mps, float bias_mps2);
 
+/* Vehicle and ground rise by so much faster than was thought, at the same height. bias_mps2: of the
+ * accelerometer. */
+void estimator_move_ground(estimator_t *estimator, float by_mps, float bias_mps2);
+
 /* Adds to the bias: the model has taken over a part of it. */
 void estimator_move_bias(estimator_t *estimator, float by_mps2);
 

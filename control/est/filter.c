@@ -11,6 +11,7 @@
 
 #define HEIGHT_DRIFT_M 0.0047F /* fitted; m per root second */
 #define TERRAIN_TIME_S 1.0F    /* chosen: a slope lasts about a second */
+#define REST_SIGMA_MPS 0.02F   /* chosen: a vehicle on the ground may shake */
 #define VARIANCE_MIN \
     1.0e-7F /* of any state: the rounding of 32-bit floats, FLT_EPSILON, of one of 1 \
              */
@@ -191,4 +192,12 @@ float filter_variance_start(filter_state_t state)
 float filter_variance_most(filter_state_t state)
 {
     return variance_max[state];
+}
+
+void filter_stand(filter_t *filter)
+{
+    const float variance = REST_SIGMA_MPS * REST_SIGMA_MPS;
+
+    filter_correct(filter, FILTER_SPEED, -filter->estimate.speed_mps, variance);
+    filter_correct(filter, FILTER_TERRAIN, -filter->estimate.terrain_mps, variance);
 }

@@ -48,6 +48,9 @@ void filter_predict(filter_t *filter, const motion_t *motion, float dt_s, const 
 /* A measurement of one state. innovation: measured minus estimated. variance: of the measurement, > 0. */
 void filter_correct(filter_t *filter, filter_state_t state, float innovation, float variance);
 
+/* The vehicle stands: neither it nor the ground moves. */
+void filter_stand(filter_t *filter);
+
 /* Overwrites the estimate where the caller knows better; within its bounds. */
 void filter_bound(filter_t *filter);
 

@@ -17,6 +17,14 @@ static float bounded_n(float thrust_n)
     return bounds_apply(&bounds, &now, thrust_n);
 }
 
+void test_full_thrust_is_told_also_where_the_law_asks_for_no_more_than_there_is(void)
+{
+    (void)bounded_n(THRUST_MAX_N);
+    TEST_ASSERT_EQUAL(BOUND_ACTUATOR, bounds.holds);
+    (void)bounded_n(THRUST_MAX_N - 0.01F);
+    TEST_ASSERT_EQUAL(BOUND_NONE, bounds.holds);
+}
+
 void test_an_estimate_that_no_height_has_checked_coasts_near_the_hover_thrust(void)
 {
     for (int i = 0; i < 3; i++) {

@@ -99,6 +99,32 @@ void test_it_flies_by_the_heights_or_by_a_felt_climb(void)
     }
 }
 
+/* The heights told 0.1 m/s, and are gone for 0.3 s; the accelerometer feels otherwise. */
+static float speed_after_mps(float felt_mps, uint32_t age_us)
+{
+    setUp();
+    airborne(true);
+    in_state(FLIGHT_COASTING);
+    cycle_takes_us(25000U);
+    height_is_new(false, age_us);
+    feel(felt_mps);
+    evidence.bias_mps2 = 0.2F;
+    estimated(0.6F, 0.1F, 0.0F);
+    locate();
+    NEAR(est.estimator.now.speed_mps - est.estimator.now.terrain_mps, 0.1F); /* the same above the ground */
+    return est.estimator.now.speed_mps;
+}
+
+void test_heights_that_go_while_the_ground_rises_leave_the_speed_that_is_felt(void)
+{
+    NEAR(0.9F, speed_after_mps(0.9F, 300001U));
+    NEAR(0.2F, est.estimator.now.bias_mps2);
+    NEAR(-0.5F, speed_after_mps(-0.5F, 325000U));
+    NEAR(0.1F, speed_after_mps(0.42F, 325000U)); /* as wrong as both may be */
+    NEAR(0.1F, speed_after_mps(0.9F, 300000U));  /* still fresh */
+    NEAR(0.1F, speed_after_mps(0.9F, 325001U));  /* once is enough */
+}
+
 void test_a_take_off_that_was_given_up_flies_when_a_climb_is_felt(void)
 {
     static const struct {

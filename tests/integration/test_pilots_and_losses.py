@@ -382,6 +382,13 @@ class Losses(Case):
             off = max(abs(row["height_m"] - 0.6) for row in flight.rows if row["state"] == "FLYING" and row["t_s"] > 6.0)
             self.at_most(0.15, off, flight, "m off the reference")
 
+    def test_a_scanner_that_falls_silent_while_the_ground_rises_lets_no_vehicle_climb_away(self):
+        """The heights tell the speed above the ground. Without them it was taken for the vehicle's own, which climbed on unseen."""
+        ramp = Path(PROGRAM).resolve().parent / "ramp.place"
+        ramp.write_text("ramp 2.8 0 2.6 2 0 0.7\nblock 6.1 0 4 2 0.7\ngo 4 5 0 2\n", encoding="utf-8")
+        for flight in flights(("EST",) * 4, VEHICLES, lambda rng: (silent(rng.uniform(5.7, 6.1), 3.0), {}, ["--place", str(ramp), *UNTIL_DOWN])):
+            self.at_most(0.6 + 0.6, max(row["height_m"] for row in flight.rows), flight, "m high")
+
     def test_a_scan_frozen_around_the_lift_off_neither_lifts_nor_drops_it(self):
         for start_s in (1.5, 1.6, 1.7, 2.0, 2.2):
             for flight in flights(("EST",), ("nominal", "drawn 0"),

@@ -476,6 +476,18 @@ void test_an_amended_estimate_is_the_given_one(void)
     NEAR(1.5F, filter->estimate.bias_mps2);
 }
 
+void test_moved_ground_takes_the_vehicle_with_it(void)
+{
+    filter->estimate = (estimate_t){
+        .height_m = 0.4F, .speed_mps = 0.1F, .bias_mps2 = 0.3F, .terrain_mps = 0.2F};
+    estimator_move_ground(&e, 0.5F, -0.1F);
+    NEAR(0.4F, filter->estimate.height_m);
+    NEAR(0.6F, filter->estimate.speed_mps);
+    NEAR(0.7F, filter->estimate.terrain_mps);
+    NEAR(-0.1F, filter->estimate.bias_mps2);
+    NEAR(0.6F, e.now.speed_mps);
+}
+
 void test_a_moved_bias_moves_at_both_instants(void)
 {
     filter->estimate.bias_mps2 = 0.1F;
