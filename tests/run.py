@@ -77,7 +77,7 @@ def main():
         print(spent(float(sys.argv[2]), sys.argv[3:]))
         return
     build, *options = sys.argv[1:] or [""]
-    if not (Path(build) / "CTestTestfile.cmake").is_file():
+    if not build or not (Path(build) / "CTestTestfile.cmake").is_file():        # "" is the present one, and that may have tests
         sys.exit(f"run.py: {build or 'no directory'}: no build directory with tests; run.py BUILD -R NAME runs one test of BUILD")
     report = Path(build).resolve() / "Testing" / "run.xml"
     report.parent.mkdir(exist_ok=True)
