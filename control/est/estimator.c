@@ -2,7 +2,7 @@
  * the filter stays at the instant of the latest rays, and keeps the IMU frames since then. A height is fused
  * at its own instant; then the frames predict the state up to now.
  * What breaks: after a reset the speed may be anything, and until two heights have told it nothing is
- * learned. Constants marked "fitted": docs/control.md. */
+ * learned. "fitted": docs/control.md; make tune LAW=EST ARGS="--constants est" searches it again. */
 #include "control/est/estimator.h"
 
 #include <math.h>

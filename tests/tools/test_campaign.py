@@ -525,7 +525,7 @@ class Saying(Case):
         own = self.dir / "own.json"
         own.write_text('{"laws": {"SLOWER": {"settings": {"POSK": 2}}}}', encoding="utf-8")
         for words in (("--runs", "9"), ("--law", "EST"), ("--law", f"{','.join(plan.LAWS)},GLIDE"), ("--set", "nominal"), ("--set", "KP=1"), ("--seed", "2"),
-                      ("--plan", str(own)), ("--vehicle", str(own)), ("--fly", "calm/1/EST"), ("--healthy", "--held-out"), ("--battery", "--held-out")):
+                      ("--plan", str(own)), ("--vehicle", str(own)), ("--healthy", "--held-out"), ("--battery", "--held-out")):
             with self.subTest(words=words), mock.patch.dict(plan.LAWS):
                 with self.assertRaises(SystemExit) as end, contextlib.redirect_stderr(io.StringIO()) as err:
                     campaign.read_arguments(self.argv("--page", *words))

@@ -186,7 +186,7 @@ def written(lines, known, rng, held_out, where):
         if isinstance(line, str):
             yield from filled(line, known).splitlines()
             continue
-        for i in range(int(filled(line["times"], known))):
+        for i in range(int(float(filled(line["times"], known)))):
             known |= {"i": i} | draw_all(line.get("draw", {}), rng, held_out, where)
             yield from filled(line["line"], known).splitlines()
             known |= {name: calculate(text, known) for name, text in line.get("then", {}).items()}
