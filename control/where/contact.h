@@ -25,12 +25,11 @@ typedef enum {
 
 typedef struct {
     contact_kind_t kind;
-    bool airborne;    /* the firmware's thrust carries the vehicle */
-    bool lifting;     /* since the ground the vehicle has not left it yet, as far as known */
-    bool gave_up;     /* TAKEOFF ended, and the vehicle had not left the ground */
-    float touching_s; /* time near the ground since a height of LANDING showed it, see touchdown.h */
-    float
-        unpowered_s; /* how long it has had no thrust while it lands, at a height that may be the ground's */
+    bool airborne;     /* the firmware's thrust carries the vehicle */
+    bool lifting;      /* since the ground the vehicle has not left it yet, as far as known */
+    bool gave_up;      /* TAKEOFF ended, and the vehicle had not left the ground */
+    float touching_s;  /* time near the ground since a height of LANDING showed it, see touchdown.h */
+    float unpowered_s; /* time without thrust in a landing, at a height that may be the ground's */
 } contact_t;
 
 /* What one cycle shows, after the supervisor's step. */
